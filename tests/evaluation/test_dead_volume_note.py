@@ -6,9 +6,11 @@ import json
 
 import pytest
 
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import predicted
 from pneutouch.results.record import plain as data
 from pneutouch.units import ML
+from tests.evaluation.calibrated import changed, library_of
 
 NOTE = "the paper's idealisation: connector and tube as drawn hold"
 
@@ -56,6 +58,19 @@ def test_the_figures_with_the_gas_as_drawn_are_those_of_the_design_that_states_i
         for key in ("sensitivity_kPa_per_N", "stiffness_N_per_mm", "range_end_mm", "cavity_volume_mL"):
             assert one[key] == pytest.approx(other[key], rel=1e-9)
     assert "as_drawn" not in stated and "dead_volume_as_drawn_mL" not in stated
+
+
+def test_a_measured_sensor_has_the_gas_that_was_measured(library, tmp_path):
+    """A calibration fits the dead volume: nothing of it is an idealisation, and the drawing does not replace it."""
+    place = library_of(tmp_path, library, changed(design={"dead_volume_mL": 0.0}))
+    document = data(predicted(evaluate("paper-dome@mine", model="atlas", library=place)))
+    assert document["dead_volume_mL"] > 0
+    assert not {"dead_volume_note", "dead_volume_as_drawn_mL", "as_drawn"} & document.keys()
+
+
+def test_a_membrane_names_the_volume_and_asks_no_other_model(evaluated):
+    document = data(predicted(evaluated("paper-dome", model="membrane")))
+    assert document["dead_volume_as_drawn_mL"] > 1 and "as_drawn" not in document
 
 
 @pytest.mark.slow

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.gauge import gauge_record
 from pneutouch.evaluation.relaxation import viscous
 from pneutouch.evaluation.uncertainty import uncertainties
-from pneutouch.mechanics import predict
 from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.mechanics.response import tangent_stiffness
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
@@ -71,7 +69,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
         dead_volume_as_drawn_mL=_drawn_mL(evaluation),
-        as_drawn=as_drawn(evaluation),
+        as_drawn=evaluation.as_drawn,
         contact_anywhere=anywhere,
     )
 
@@ -80,19 +78,6 @@ def _drawn_mL(evaluation: Evaluation) -> float | None:
     """The gas of connector and tube as drawn, where the design states none."""
     assembly = evaluation.assembly
     return float(rounded(assembly.drawn_volume / ML, _MODEL_DIGITS)) if assembly.dead_volume_note else None
-
-
-def as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
-    """The states with the gas of connector and tube as drawn, by the atlas; none where the design states its gas."""
-    assembly, prediction = evaluation.assembly, evaluation.prediction
-    if not assembly.dead_volume_note:
-        return ()
-    sensor = evaluation.sensor.replace(dead_volume=assembly.drawn_volume)
-    try:
-        drawn = predict(prediction.design, sensor, [s.driving_pressure for s in prediction.states], model="atlas")
-    except InputError:
-        return ()
-    return by_model(drawn).states
 
 
 def _anywhere(evaluation: Evaluation) -> ContactAnywhere:

@@ -24,7 +24,6 @@ from pneutouch.printability.rulebook import check_mould, mould_subject
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
-from pneutouch.spec.part import Port, Tube
 from pneutouch.spec.read import read_toml
 
 _HINTS = {
@@ -153,20 +152,24 @@ _OF_PORTS = ("walls", "pins", "holes", "channels")
 def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
     """Findings on the connector with ports that end them named in their remedies: each was drawn and measured.
 
-    Ports that take the design's tube come first."""
+    Ports that take the design's tube come first; where the design names a tube, the others are left out."""
     broken = {one.rule for one in findings if _names_port(one)}
     if not broken:
         return findings
-    ports, ending = _ports_with_tubes(), {rule: list[str]() for rule in broken}
-    other_tube = {name: all(tube.title != scene.tube.title for tube in tubes) for name, (_, tubes) in ports.items()}
-    for name in sorted(ports, key=other_tube.__getitem__):
-        if name == scene.design.connector.port or all(len(names) == _NAMED for names in ending.values()):
+    ending: dict[str, list[str]] = {rule: [] for rule in broken}
+    tubes, stated = dict(_shipped("tubes")), scene.design.pneumatics.tube
+    own = [name for name, tube in tubes.items() if tube.title == scene.tube.title]
+    for name, port in sorted(_shipped("ports"), key=lambda entry: not set(own) & set(entry[1].tubes)):
+        if name == scene.design.connector.port or stated not in (None, *port.tubes):
             continue
-        port, tubes = ports[name]
+        if all(len(names) == _NAMED for names in ending.values()):
+            break
         connector = scene.design.connector.model_copy(update={"port": name})
         design = scene.design.model_copy(update={"connector": connector})
         with suppress(InputError):
-            subject = subject_of(assemble(replace(scene, design=design, port=port, tube=tubes[0])))
+            subject = subject_of(
+                assemble(replace(scene, design=design, port=port, tube=tubes[stated or port.tubes[0]]))
+            )
             items = tuple(item for item in subject.items if item.body.name == "connector")
             view = PrintView(replace(subject, items=items, joints=()), None)
             for rule, names in ending.items():
@@ -174,21 +177,15 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
     return [_with_port(one, ending[one.rule]) if _names_port(one) else one for one in findings]
 
 
-def _ports_with_tubes() -> dict[str, tuple[Port, list[Tube]]]:
-    """The shipped ports by name with their tubes: a build has the same bytes whatever a user's folder holds."""
-    ports, tubes = dict(_shipped("ports")), dict(_shipped("tubes"))
-    return {name: (port, [tubes[tube] for tube in port.tubes]) for name, port in ports.items()}
-
-
 def _shipped(kind: str) -> Iterator[tuple[str, Any]]:
+    """Parts of the package alone: a build has the same bytes whatever a user's folder holds."""
     for path in sorted((PACKAGE / KINDS[kind].folder).glob("*.toml")):
         yield path.stem, KINDS[kind].validate(read_toml(path), str(path))
 
 
 def _with_port(finding: Finding, names: list[str]) -> Finding:
-    return (
-        replace(finding, fix=finding.fix.replace(_PORT, f"connector.port = {' or '.join(names)}")) if names else finding
-    )
+    fix = finding.fix.replace(_PORT, f"connector.port = {' or '.join(names)}") if names else finding.fix
+    return replace(finding, fix=fix)
 
 
 def _names_port(finding: Finding) -> bool:

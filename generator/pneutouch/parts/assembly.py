@@ -138,9 +138,11 @@ class Assembly:
 
     @property
     def dead_volume_note(self) -> str:
-        """Note on a stated dead volume of zero behind a tube, as in the paper's theory; else empty."""
-        pneumatics = self.scene.design.pneumatics
-        if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0:
+        """Note on a stated dead volume of zero behind a tube, as in the paper's theory; else empty.
+
+        A calibrated sensor has the volume that was measured."""
+        pneumatics, calibrated = self.scene.design.pneumatics, self.scene.calibration is not None
+        if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0 or calibrated:
             return ""
         drawn_mL = self.drawn_volume / ML
         return f"the paper's idealisation: connector and tube as drawn hold {drawn_mL:.2f} mL"

@@ -74,7 +74,7 @@ export class RunsTable {
   turns(columns, units) {
     const said = (changed) => {
       const all = columns.map((column) => ({ ...column, ...(column.channel === changed.channel ? changed : {}) }));
-      this.restated(all.map(({ channel, sign, name, unit }) => `${channel}=${sign < 0 ? "-" : ""}${name}:${unit}`).join(", "));
+      this.restated(all.map(({ channel, sign, name, unit }) => `${channel}=${sign < 0 ? "-" : ""}${name}${unit ? `:${unit}` : ""}`).join(", "));
     };
     const parts = columns.map(({ channel, sign, unit }) => {
       const options = units[channel].map((each) => element("option", { value: each, selected: each === unit }, each));
