@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from pneutouch.catalogue.library import PACKAGE
 from pneutouch.evaluation.evaluate import evaluate
 
 
@@ -35,11 +36,14 @@ def test_ports_of_the_designs_own_tube_are_named_first():
     assert re.findall(r"connector\.port = (\S+)", on_connector({})["walls"]) == ["push-in-4"]
 
 
-def test_a_tube_that_the_design_names_goes_with_every_port_that_a_remedy_names():
-    named = {"connector.port": "barb-3x2", "pneumatics.tube": "3x2"}
-    (ports,) = re.findall(r"connector\.port = ([^,]+)", on_connector(named)["walls"]) or [""]
-    for port in filter(None, ports.split(" or ")):
-        assert "walls" not in on_connector({**named, "connector.port": port})
+def test_a_tube_that_the_design_names_goes_with_every_port_that_a_remedy_names(tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    (tmp_path / "parts/ports").mkdir(parents=True)
+    of_3x2 = (PACKAGE / "parts/ports/barb-3x2.toml").read_text()
+    (tmp_path / "parts/ports/mine.toml").write_text(of_3x2.replace('tubes = ["3x2"]', 'tubes = ["4x3"]'))
+    named = {"connector.port": "mine", "pneumatics.tube": "4x3"}
+    assert re.findall(r"connector\.port = ([^,]+)", on_connector(named)["walls"]) == ["thread-M5"]
+    assert "walls" not in on_connector({**named, "connector.port": "thread-M5"})
 
 
 def test_a_port_of_the_user_that_is_not_valid_is_not_proposed_and_stops_nothing(tmp_path, monkeypatch):
