@@ -189,6 +189,15 @@ def test_channels_that_lag_one_another_are_asked_about(name, seconds, tmp_path):
     assert asked(read(tmp_path, lagging), words)
 
 
+def test_a_lag_in_which_a_slow_press_hardly_goes_on_is_not_asked_about(tmp_path):
+    legs = [(4.0, CLEAR), (45.0, DEEP), (45.0, CLEAR), (2.0, CLEAR)]
+    slow = Recording(legs, noise=0.005, spoil=later(0.04))
+    measured = read(tmp_path, slow)
+    assert not measured.questions
+    found, value = figures(measured)["sensitivity_kPa_per_N"], true_figures(slow.at())["sensitivity_kPa_per_N"]
+    assert found.value == pytest.approx(value, rel=0.02)
+
+
 def test_a_great_leak_is_a_question(tmp_path):
     assert asked(read(tmp_path, replace(READ["stairs without return"], drift=-5.0)), "without contact")
 
