@@ -53,6 +53,8 @@ def test_a_change_that_is_named_takes_a_port_of_the_shelf(library):
         ({"have": {"printers": ["j735"]}}, r"objet260-connex is not on the shelf.*j735; give one of them by `profile`"),
         ({"have": {"materials": ["FLX99"]}}, r"have\.materials = \"FLX99\": no such name"),
         ({"have": {"materials": ["FLX9940"]}, "given": {"materials": ["TangoPlus"]}}, "names TangoPlus, which"),
+        ({"have": {"materials": ["ABS"]}}, r"have\.materials: none is an elastomer"),
+        ({"have": {"materials": ["ABS", "DragonSkin20"]}}, "runs none of DragonSkin20; .*`profile` silicone-casting"),
         ({"have": {"resins": ["FLX9940"]}}, r"have\.resins: unknown key"),
     ],
 )

@@ -268,7 +268,8 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
             )
     runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
     if not runs:
-        named = loaded if pair or target.given.materials else {}
+        limited = pair or target.given.materials or target.have.materials
+        named = {name: m for name, m in loaded.items() if m.kind == "elastomer"} if limited else {}
         raise _runs_none(printer, named, where, library)
     return runs[0]
 
@@ -282,10 +283,11 @@ def read_shelf(path: Path) -> Shelf:
 
 
 def _check_known(shelf: Shelf, library: Library, where: str, prefix: str) -> None:
-    """Raise InputError for a name on a shelf that the library has not; the keys are named with ``prefix``."""
+    """Raise InputError for an unknown name on a shelf, or if no resin is an elastomer; keys begin with ``prefix``."""
     for kind in type(shelf).model_fields:
-        for name in getattr(shelf, kind) or ():
-            library.load(kind, name, file=where, key=f"{prefix}{kind}")
+        parts = [library.load(kind, name, file=where, key=f"{prefix}{kind}") for name in getattr(shelf, kind) or ()]
+        if kind == "materials" and parts and all(part.kind != "elastomer" for part in parts):
+            raise InputError("none is an elastomer", file=where, key=f"{prefix}{kind}", remedy="add the dome's resin")
 
 
 def _check_shelf(target: Target, profile: str, where: str, library: Library) -> None:
