@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
-    from pneutouch.results.prediction import StateRecord
     from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
 
@@ -119,19 +118,17 @@ class Evaluation:
         return uncertainties(self.prediction, self.sensor, self.scene, lambda: self.resins)
 
     @cached_property
-    def as_drawn(self) -> tuple[StateRecord, ...]:
-        """The states with the gas of connector and tube as drawn, by the atlas, where the design states none; nothing
+    def as_drawn(self) -> SensorPrediction | None:
+        """The prediction with the gas of connector and tube as drawn, by the atlas, where the design states none; None
         beside the membrane's trend, which loads no tables."""
         if not self.assembly.dead_volume_note or self.prediction.model == "membrane":
-            return ()
-        from pneutouch.evaluation.result import by_model
-
+            return None
         sensor = self.sensor.replace(dead_volume=self.assembly.drawn_volume)
         try:
             pressures = [state.driving_pressure for state in self.prediction.states]
-            return by_model(predict(self.scene.name, sensor, pressures, model="atlas")).states
+            return predict(self.scene.name, sensor, pressures, model="atlas")
         except InputError:
-            return ()
+            return None
 
     @cached_property
     def rating(self) -> Rating:

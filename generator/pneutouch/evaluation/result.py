@@ -69,7 +69,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
         dead_volume_as_drawn_mL=_drawn_mL(evaluation),
-        as_drawn=evaluation.as_drawn,
+        as_drawn=states_as_drawn(evaluation),
         contact_anywhere=anywhere,
     )
 
@@ -78,6 +78,11 @@ def _drawn_mL(evaluation: Evaluation) -> float | None:
     """The gas of connector and tube as drawn, where the design states none."""
     assembly = evaluation.assembly
     return float(rounded(assembly.drawn_volume / ML, _MODEL_DIGITS)) if assembly.dead_volume_note else None
+
+
+def states_as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
+    """The states with the gas of connector and tube as drawn; none where `Evaluation.as_drawn` is None."""
+    return () if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states
 
 
 def _anywhere(evaluation: Evaluation) -> ContactAnywhere:
