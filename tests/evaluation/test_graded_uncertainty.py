@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue.mixture import mixed_material
-from pneutouch.evaluation.uncertainty import GAP, STEEP_GAP, even_wall, notes_on
+from pneutouch.evaluation.uncertainty import GAP, STEEP_GAP, notes_on
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY
@@ -59,7 +59,7 @@ def test_the_even_walls_derivatives_are_near_the_graded_solids(
     more, less = (sensor.replace(**{name: value * np.exp(step)}) for step in (STEP, -STEP))
     solid = (logs(more, pressure) - logs(less, pressure)) / (2 * STEP)
     flat = np.zeros((len(INPUTS), len(FIGURES), 1))
-    batch = batch_of(even_wall(sensor), [pressure])
+    batch = batch_of(sensor.even, [pressure])
     found = derivatives(batch, flat, np.full((len(INPUTS), 1), 3.0)).elasticities
     assert found[INPUTS.index(name), SENSITIVITY, 0] == pytest.approx(solid, abs=gap)
 
@@ -77,11 +77,11 @@ def test_a_factor_on_the_whole_modulus_is_a_factor_on_the_limit_pressure(evaluat
 
 def test_an_even_wall_stays_as_it_is_and_needs_no_note(evaluated):
     sensor = evaluated("paper-dome").sensor
-    assert even_wall(sensor) is sensor
+    assert sensor.even is sensor
     assert notes_on(sensor) == ()
     other = evaluated("graded-dome").sensor
     assert outside_atlas(other) is not None
-    assert outside_atlas(even_wall(other)) is None
+    assert outside_atlas(other.even) is None
     assert f"within {GAP:g} of" in notes_on(other)[0]
 
 

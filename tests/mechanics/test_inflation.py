@@ -131,6 +131,17 @@ def test_the_rows_that_the_error_is_stated_against_soften_up_to_the_limit_point(
     assert (np.diff(slopes) < 0.0).all() and 0.0 < slopes[-1] < 0.02 * slopes[0]
 
 
+def test_height_errors_are_those_of_the_exact_membrane_up_to_the_cap_s_limit():
+    """Between the rows too, and just below the limit, where the cap's height rises as a root."""
+    pressures, heights = np.array([inflated(stretch) for stretch in np.linspace(1.05, 1.66, 25)]).T
+    below = (pressures < LIMIT_PRESSURE) & (np.arange(25) <= pressures.argmax())
+    true = relative_height(pressures[below], 1.0, 1.0, 1.0) / heights[below] - 1
+    np.testing.assert_allclose(height_errors(pressures[below]), true, atol=2e-3)
+    last = brentq(lambda stretch: inflated(stretch)[0] - LIMIT_PRESSURE * (1 - 1e-9), 1.3, 1.62)
+    expected = LIMIT_HEIGHT / inflated(last)[1] - 1
+    assert height_errors(np.array([LIMIT_PRESSURE])) == pytest.approx(expected, abs=2e-3)
+
+
 @pytest.mark.slow
 def test_shooting_meets_every_row_that_the_error_is_stated_against():
     for p, h in RISING_BRANCH[1:-1]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 
 import numpy as np
 import pytest
@@ -211,6 +212,24 @@ def test_a_port_larger_than_the_body_is_refused():
         assemble(
             load_scene(BASE, parse_changes([*small, "connector.seat=one-piece", "connector.port=thread-M5"]), LIBRARY)
         )
+
+
+@settings(max_examples=25)
+@given(st.floats(1, 12), st.sampled_from(PARTS))
+def test_the_radius_named_to_a_dome_too_small_has_space(radius, parts):
+    changes = {f"connector.{kind}": part for kind, part in zip(("port", "seat", "mount"), parts, strict=True)}
+
+    def laid(inner_radius):
+        sizes = {"membrane.inner_radius_mm": inner_radius, "membrane.wall_thickness_mm": 0.16 * inner_radius}
+        return assemble(load_scene(BASE, {**changes, **sizes}, LIBRARY))
+
+    try:
+        laid(radius)
+    except InputError as error:
+        named = re.fullmatch(r"take at least ([\d.]+), or another port, mount or printer", error.remedy or "")
+        assert named or "too small for" not in error.problem
+        if named:
+            assert float(named[1]) > radius and laid(float(named[1]))
 
 
 FITTED = [parts for parts in PARTS if parts[0] in ("barb-4x2.5", "thread-M5", "push-in-6")]

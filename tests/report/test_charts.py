@@ -158,8 +158,28 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
 def test_axes_of_the_charts_carry_quantities_and_units(evaluated, drawn):
     evaluation = evaluated("paper-dome", model="atlas")
     tuned = tuning_panel(replace(tuning(evaluation, 0.03), published_kPa_per_N=((0.0, 2.547),)))
-    for panel in (tuned, tradeoff_panel(drawn)):
+    # A resin stands in a row, so its axis has names.
+    assert tradeoff_panel(drawn).y == "" and tradeoff_panel(drawn).rows
+    for panel in (tuned, tradeoff_panel(replace(drawn, gauge_kPa=300.0)), replace(tradeoff_panel(drawn), y="f  (N)")):
         assert all(re.search(r"\w+  \((kPa|N|kPa/N)\)$", label) for label in (panel.x, panel.y))
+
+
+def test_fronts_that_the_gauge_ends_stand_in_rows(drawn):
+    """All on the line force times sensitivity = range of the gauge: rows show them apart, thin where less is reached."""
+    panel, (spot,) = tradeoff_panel(drawn), drawn.spots
+    assert sorted(panel.rows) == sorted(front.resin.material.title for front in drawn.known)
+    bars = {line.y[-1]: line for line in panel.lines if line.width == 0.7 and len(line.x)}
+    thick = {float(np.nanmax(line.y)): line for line in panel.lines if line.width > 3}
+    for front in drawn.known:
+        row = panel.rows.index(front.resin.material.title)
+        np.testing.assert_array_equal(bars[row].x, front.sensitivity)
+        by_gauge = front.force * front.sensitivity > 0.93 * drawn.gauge_kPa
+        np.testing.assert_array_equal(np.isfinite(thick[row].y), by_gauge)
+        ends = [note.text for note in panel.notes if note.at in [(float(s), row) for s in front.sensitivity[[0, -1]]]]
+        assert ends == [f"{front.force[0]:.3g} N", f"{front.force[-1]:.3g} N"]
+    (mark,) = [line for line in panel.lines if line.marker]
+    assert mark.x == (spot.figures.sensitivity,) and panel.rows[int(mark.y[0])] == spot.resin
+    assert [line.label for line in panel.lines if not len(line.x)] == ["less: another limit"]
 
 
 def test_share_bars_add_up_and_are_as_long_as_the_shares(evaluated, axes):

@@ -14,7 +14,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
-from pneutouch.evaluation.uncertainty import even_wall, spread, unknown
+from pneutouch.evaluation.uncertainty import spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.predict import contact_words
@@ -53,7 +53,7 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid, aged: float) -> 
     Sources that act on inputs of the model act through the curve of force over pressure rise; errors of the model are
     those of its sensitivity, the slope of that curve. The gauge's noise is not in it.
     """
-    sensor, scene = even_wall(evaluation.sensor), evaluation.scene
+    sensor, scene = evaluation.sensor.even, evaluation.scene
     if why_unknown(evaluation, grid) is not None:
         return None
     from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
@@ -84,7 +84,7 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
     other = evaluation.sensor.protocol.other_contact
     if other is not None:
         return f"computed for a central plate without friction alone; here {other}"
-    return unknown(even_wall(evaluation.sensor), grid.model)
+    return unknown(evaluation.sensor.even, grid.model)
 
 
 def _slopes(batch: SensorBatch) -> Array:

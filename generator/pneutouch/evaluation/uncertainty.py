@@ -54,20 +54,10 @@ _LAW_NOTE = (
 )
 
 
-def even_wall(sensor: Sensor) -> Sensor:
-    """The sensor as the atlas can take it: its mean modulus everywhere, and the neo-Hookean wall for a fitted law."""
-    even = sensor if sensor.wall.grade is None else sensor.replace(grade=None)
-    return even.replace(law=None) if _fitted(even) else even
-
-
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
     """Notes on the uncertainty of this sensor."""
     graded = () if sensor.wall.grade is None else (_NOTE,)
-    return (*graded, _LAW_NOTE) if _fitted(sensor) else graded
-
-
-def _fitted(sensor: Sensor) -> bool:
-    return sensor.wall.law is not None and sensor.wall.largest_stretch is not None
+    return (*graded, _LAW_NOTE) if sensor.wall.fitted else graded
 
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
@@ -206,7 +196,7 @@ def uncertainties(
     ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
     states, model = prediction.states, prediction.model
-    notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
+    notes_of_wall, sensor = notes_on(sensor), sensor.even
     why = why_unknown(sensor, model)
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)

@@ -57,8 +57,7 @@ def material_sensor(material: Material) -> Sensor:
         largest_stretch=None if material.law is None else material.law.largest_stretch,
     )
     # A law fitted here has a modulus fitted over the same range next to it; of another its own is taken.
-    fitted = wall.largest_stretch is not None and law is not None
-    modulus = wall.shear_modulus if fitted else wall.hyperelastic.mu
+    modulus = wall.shear_modulus if wall.fitted else wall.hyperelastic.mu
     return Sensor(
         Dome(Hemisphere(PAPER_RADIUS, PAPER_WALL)),
         dataclasses.replace(wall, shear_modulus=modulus),

@@ -85,6 +85,11 @@ class WallMaterial:
             return neo_hookean(self.shear_modulus, self.poisson_ratio)
         return hyperelastic(*self.law, self.poisson_ratio)
 
+    @property
+    def fitted(self) -> bool:
+        """True for a law that was fitted to measured curves, and beside it the neo-Hookean ``shear_modulus``."""
+        return self.law is not None and self.largest_stretch is not None
+
 
 @dataclass(frozen=True, slots=True)
 class GasCircuit:
@@ -189,6 +194,12 @@ class Sensor:
             new = {field: changes.pop(field) for field in part.__dataclass_fields__ if field in changes}
             parts[name] = dataclasses.replace(part, **new)
         return dataclasses.replace(self, **{**parts, **changes})
+
+    @property
+    def even(self) -> Sensor:
+        """The sensor as the atlas takes it: its mean modulus everywhere, the neo-Hookean wall for a fitted law."""
+        even = self if self.wall.grade is None else self.replace(grade=None)
+        return even.replace(law=None) if self.wall.fitted else even
 
     def of_modulus(self, shear_modulus: float) -> Sensor:
         """The sensor of another shear modulus, MPa; a law gives stresses in the same proportion."""

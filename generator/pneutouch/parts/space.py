@@ -13,10 +13,15 @@ Lengths = dict[str, tuple[float, float]]
 
 def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
-    for what, (has, least) in _least(scene, layout).items():
+    lengths = _least(scene, layout)
+    for what, (has, least) in lengths.items():
         if has < least:
+            # Every one of these lengths grows by as much as the dome's radius, a circle of holes in steps of 0.5 mm.
+            enough = scene.design.membrane.inner_radius_mm + max(b - a for a, b in lengths.values())
+            enough += 0.5 if isinstance(scene.mount, BoltCircle) else 0.0
             problem = f"too small for {what}: radius {has:.2f} mm, at least {least:.2f} mm"
-            raise _no_space(scene, problem, "take a larger dome, another port, mount or printer")
+            remedy = f"take at least {math.ceil(100 * enough) / 100:g}, or another port, mount or printer"
+            raise _no_space(scene, problem, remedy)
     if layout.ring is not None:
         from pneutouch.parts.cast_ring import check_ring
 

@@ -19,7 +19,6 @@ from pneutouch.report.style import (
     Label,
     band,
     figure,
-    label_corner,
     label_ends,
     legend_above,
     note,
@@ -45,7 +44,7 @@ AxisEnds = tuple[float | None, float | None]
 class PlotLine:
     """A curve or a set of points, ``x`` and ``y`` (n,); one without points is only an entry of the legend.
 
-    ``label`` stands in the legend, ``end`` right of the axes at the last point, or in the panel's corner. A line
+    ``label`` stands in the legend, ``end`` right of the axes at the last point. A line
     without ``dashes`` is only points, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
     and ``high`` bound its band, plain or with hatch number ``hatch``; ``over`` is its drawing order.
     """
@@ -97,7 +96,7 @@ class Panel:
 
     ``log`` and ``zero`` name the axes that are logarithmic or have a line at zero. ``rows`` (from above) and
     ``columns`` are names that stand at 0, 1, 2, ... in place of numbers, ``ticks`` the only numbers of the horizontal
-    axis. ``corner``: the texts of ends stand in the upper right corner; ``equal``: both axes have one scale.
+    axis. ``equal``: both axes have one scale.
     """
 
     x: str = ""
@@ -113,7 +112,6 @@ class Panel:
     columns: tuple[str, ...] = ()
     ticks: tuple[float, ...] = ()
     spans: tuple[Span, ...] = ()
-    corner: bool = False
     equal: bool = False
 
 
@@ -182,7 +180,7 @@ def draw_panel(ax: Axes, panel: Panel) -> None:
         ax.set_title(plain_text(panel.title), fontsize=7.5, loc="left", pad=3)
     ends = _ends(panel)
     if ends:
-        (label_corner if panel.corner else label_ends)(ax, ends)
+        label_ends(ax, ends)
     for one in panel.notes:
         note(ax, plain_text(one.text), one.at, one.side, color=one.tone, **(BOLD if one.bold else {}))
 
@@ -250,13 +248,12 @@ def _ticks(ax: Axes, panel: Panel) -> None:
 
 
 def _ends(panel: Panel) -> list[Label]:
-    place = 0 if panel.corner else -1
     return [
         (
-            float(one.x[place]),
-            float(one.y[place]),
+            float(one.x[-1]),
+            float(one.y[-1]),
             plain_text(one.end),
-            {"color": INK, **BOLD} if one.picked else {"color": INK if panel.corner else MUTED},
+            {"color": INK, **BOLD} if one.picked else {"color": MUTED},
         )
         for one in panel.lines
         if one.end and len(one.x)

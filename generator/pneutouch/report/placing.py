@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
 
-AT_SIDE, CORNER, NEAR = "_at_side", "_corner", "_near"
+AT_SIDE, NEAR = "_at_side", "_near"
 """Marks of an annotation, given by its `set_label`, by which `settle` moves it."""
 
 _STEP = 1.2
@@ -36,8 +36,6 @@ def settle(drawn: Figure) -> None:
     """Move the labels that are marked, once the layout stands; to be called at 72 dots per inch."""
     for ax in drawn.axes:
         _stack(ax, _marked(ax, AT_SIDE), 1.0, float(drawn.bbox.height) - 1.0)
-        frame = ax.get_window_extent()
-        _stack(ax, _marked(ax, CORNER), frame.y0, frame.y1, at_top=True)
     taken = [_box(text) for text in _fixed(drawn)]
     for ax in drawn.axes:
         curves = _curves(ax)
@@ -65,9 +63,8 @@ def _box(text: Any) -> LabelBox:
     return box.x0, box.y0, box.x1, box.y1
 
 
-def _stack(ax: Axes, labels: list[Annotation], low: float, high: float, at_top: bool = False) -> None:
-    """Labels above one another between two heights, in the order of their points and as near to them as they fit, or
-    all at the top."""
+def _stack(ax: Axes, labels: list[Annotation], low: float, high: float) -> None:
+    """Labels above one another between two heights, in the order of their points and as near to them as they fit."""
     if not labels:
         return
     boxes = [_box(label) for label in labels]
@@ -75,8 +72,7 @@ def _stack(ax: Axes, labels: list[Annotation], low: float, high: float, at_top: 
     points = [float(ax.transData.transform(label.xy)[1]) for label in labels]
     order = sorted(range(len(labels)), key=lambda k: (points[k], k))
     frame = ax.get_window_extent()
-    targets = [high if at_top else points[k] for k in order]
-    for k, y in zip(order, _column(targets, [heights[k] for k in order], low, high), strict=True):
+    for k, y in zip(order, _column([points[k] for k in order], [heights[k] for k in order], low, high), strict=True):
         labels[k].set_verticalalignment("center")
         labels[k].set_position((labels[k].get_position()[0], (y - frame.y0) / frame.height))
 
@@ -111,7 +107,7 @@ def _curves(ax: Axes) -> Array:
             half = 0.5 * line.get_linewidth() if line.get_linewidth() > 2.5 else 0.0
             points += [_dense(xy + np.array((0.0, side))) for side in sorted({-half, half})]
         if line.get_marker() not in ("None", "", " ", None):
-            points += [xy + 0.5 * line.get_markersize() * np.array(side) for side in _RIM]
+            points += [xy + 0.5 * line.get_markersize() * side for side in _RIM]
     for patch in ax.patches:
         points.append(_dense(np.asarray(patch.get_transform().transform_path(patch.get_path()).vertices, float)))
     every = np.concatenate(points)
@@ -120,17 +116,7 @@ def _curves(ax: Axes) -> Array:
     return kept
 
 
-_RIM = (
-    (0.0, 0.0),
-    (1.0, 0.0),
-    (-1.0, 0.0),
-    (0.0, 1.0),
-    (0.0, -1.0),
-    (0.7, 0.7),
-    (-0.7, 0.7),
-    (0.7, -0.7),
-    (-0.7, -0.7),
-)
+_RIM = np.array([(0.0, 0.0), *((np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4)])
 
 
 def _dense(xy: Array) -> Array:

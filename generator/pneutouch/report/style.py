@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.arrays import Array
 from pneutouch.parts.lettering.glyphs import FONTS
-from pneutouch.report.placing import AT_SIDE, CORNER, NEAR, settle
+from pneutouch.report.placing import AT_SIDE, NEAR, settle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
-    from matplotlib.text import Annotation
 
 
 BOLD: dict[str, Any] = {"family": "Inter Semi Bold", "weight": 600}
@@ -95,27 +94,12 @@ Label = tuple[float, float, str, dict[str, Any]]
 
 def label_ends(ax: Axes, ends: list[Label]) -> None:
     """Write labels right of the axes, each with a thin line to its curve's end; `svg` moves them apart."""
-    for end in ends:
-        _led(ax, end, 1.04, "left").set_label(AT_SIDE)
-
-
-def label_corner(ax: Axes, points: list[Label]) -> None:
-    """Write labels into the upper right corner, each with a thin line to its point; `svg` puts one above the other."""
-    for point in points:
-        label = _led(ax, point, 0.99, "right")
-        label.set_label(CORNER)
-        label.set_in_layout(False)
-
-
-def _led(ax: Axes, label: Label, across: float, side: str) -> Annotation:
-    """A label at a share of the width of the axes, with a line from its left."""
-    x, y, text, look = label
-    height = float((ax.transData + ax.transAxes.inverted()).transform((x, y))[1])
-    arrow: dict[str, Any] = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 2, "shrinkB": 1}
-    arrow["relpos"] = (0, 0.5)
-    style: dict[str, Any] = {"va": "center", "annotation_clip": False, "zorder": 5, "fontsize": 6.5, **look}
-    place: dict[str, Any] = {"xytext": (across, height), "textcoords": "axes fraction", "ha": side}
-    return ax.annotate(text, (x, y), arrowprops=arrow, **place, **style)
+    arrow = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 2, "shrinkB": 1, "relpos": (0, 0.5)}
+    style: dict[str, Any] = {"va": "center", "annotation_clip": False, "zorder": 5, "fontsize": 6.5}
+    for x, y, text, look in ends:
+        height = float((ax.transData + ax.transAxes.inverted()).transform((x, y))[1])
+        place: dict[str, Any] = {"xytext": (1.04, height), "textcoords": "axes fraction", "ha": "left"}
+        ax.annotate(text, (x, y), arrowprops=arrow, **place, **style | look).set_label(AT_SIDE)
 
 
 def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float] = (0.0, 1.0), **look: Any) -> None:

@@ -4,25 +4,40 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import TradeOff, TuningChart
 from pneutouch.report.chart import Note, Panel, PlotLine
 from pneutouch.report.curves import published_points, sensitivities
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES
 
+_ALIKE = 0.07
+"""Relative distance from the end of the gauge's range within which a front is one with it."""
+
 
 def tradeoff_panel(tradeoff: TradeOff) -> Panel:
-    """Greatest force range over sensitivity, both logarithmic."""
-    chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
+    """Greatest force range over sensitivity, both logarithmic; without a target, where the gauge ends the range of
+    every resin and all fronts are one line, the sensitivities that each resin reaches in rows."""
+    short = [1.0 - front.sensitivity * front.force / tradeoff.gauge_kPa for front in tradeoff.known]
     across = f"sensitivity at {tradeoff.driving_pressure_kPa:g} kPa  (kPa/N)"
+    across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
+    target = tradeoff.window_kPa_per_N or tradeoff.force
+    if short and not target and np.median(np.concatenate(short)) < _ALIKE:
+        return replace(_reached(tradeoff, short), x=across)
+    chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
     xlim, ylim = _limits(tradeoff)
-    lines, notes = _gauge(tradeoff, xlim), []
+    # The cavity pressure reaches the end of the pressure sensor's range: no design is beyond.
+    label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
+    edge = [tradeoff.gauge_kPa / x for x in xlim]
+    lines, notes = [PlotLine(xlim, edge, label, tone=FAINT, width=5, over=2)], []
     window = tradeoff.window_kPa_per_N or (xlim if tradeoff.force is not None else None)
     if window is not None:
         least, (low, high) = tradeoff.force or ylim[0], window
         frame = (low, low, high, high), (ylim[1], least, least, ylim[1])
         floor, top = (least, least), (ylim[1], ylim[1])
         lines += [PlotLine(window, low=floor, high=top, dashes=""), PlotLine(*frame, width=0.6, over=1)]
-        notes.append(Note("target", ((low * high) ** 0.5, ylim[1]), (0.0, -1.0), bold=True))
+        notes.append(Note("target", ((low * high) ** 0.5, least), (0.0, -1.0), bold=True))
     for k, spot in enumerate(tradeoff.spots):
         at = spot.figures.sensitivity, spot.figures.reach
         lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
@@ -32,33 +47,43 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
         picked = title == chosen
         tone, width, dashes = (ACCENT, 2.0, LINES[0]) if picked else (INK, 0.8, LINES[k % 5])
         end = f"{title}  {s[0]:.2g} to {s[-1]:.2g}"
-        line = PlotLine(s, front.force, "", end, tone, dashes, width, picked=picked, over=3 + picked)
-        lines.append(line)
+        lines.append(PlotLine(s, front.force, "", end, tone, dashes, width, picked=picked, over=3 + picked))
         lines.append(PlotLine(s[:1], front.force[:1], tone=tone, dashes="", marker="o", size=2.2, filled=True, over=4))
-    across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
-    return Panel(
-        across, "greatest force range  (N)", tuple(lines), tuple(notes), xlim=xlim, ylim=ylim, log="xy", corner=True
-    )
+    return Panel(across, "greatest force range  (N)", tuple(lines), tuple(notes), xlim=xlim, ylim=ylim, log="xy")
+
+
+def _reached(tradeoff: TradeOff, short: list[Array]) -> Panel:
+    """Sensitivities that each resin reaches, with the force range at both ends; thin where another limit than the
+    gauge ends it, by shares ``short`` (n,) of its range."""
+    key = f"force range {tradeoff.gauge_kPa:g} kPa (gauge) / sensitivity"
+    order = sorted(range(len(short)), key=lambda k: -tradeoff.known[k].sensitivity[0])
+    titles, lines, notes = [tradeoff.known[k].resin.material.title for k in order], [], []
+    for k, (front, missing) in enumerate((tradeoff.known[each], short[each]) for each in order):
+        s, row = front.sensitivity, np.full(front.sensitivity.size, float(k))
+        tone = ACCENT if tradeoff.spots and titles[k] == tradeoff.spots[0].resin else INK
+        whole = np.where(missing < _ALIKE, row, np.nan)
+        lines.append(PlotLine(s, whole, "" if k else key, tone=tone, width=3.5))
+        lines.append(PlotLine(s, row, tone=tone, width=0.7))
+        notes += [Note(f"{front.force[e]:.3g} N", (float(s[e]), k), (-1.0 - 2.0 * e, 0.0)) for e in (0, -1)]
+    for k, spot in enumerate(spot for spot in tradeoff.spots if spot.resin in titles):
+        at = spot.figures.sensitivity, float(titles.index(spot.resin))
+        lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
+        notes.append(Note(spot.label, at, (0.0, 1.0), bold=k == 0))
+    if max(missing.max() for missing in short) >= _ALIKE:
+        lines.append(PlotLine(label="less: another limit", width=0.7))
+    reached = np.concatenate([front.sensitivity for front in tradeoff.known])
+    xlim = reached.min() / 3.0, 3.0 * reached.max()
+    return Panel("", "", tuple(lines), tuple(notes), xlim=xlim, log="x", rows=tuple(titles))
 
 
 def _limits(tradeoff: TradeOff) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Limits that hold the fronts, the designs and the window, with a margin and with space for the labels."""
+    """Limits that hold the fronts, the designs and the window, with a margin."""
     x = [float(value) for front in tradeoff.known for value in front.sensitivity]
     y = [float(value) for front in tradeoff.known for value in front.force]
     x += [spot.figures.sensitivity for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
     y += [spot.figures.reach for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
-    left, right = min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3
     low, high = min(y, default=0.1) / 1.4, max(y, default=10.0) * 1.4
-    # The labels stand in the upper right corner, above the gauge's limit: it has to leave them the half of the height.
-    limit = tradeoff.gauge_kPa / (left * right) ** 0.5
-    return (left, right), (low, max(high, low * (limit / low) ** 2))
-
-
-def _gauge(tradeoff: TradeOff, xlim: tuple[float, float]) -> list[PlotLine]:
-    """The line at which the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
-    label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
-    edge = [tradeoff.gauge_kPa / x for x in xlim]
-    return [PlotLine(xlim, edge, label, tone=FAINT, width=5, over=2)]
+    return (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3), (low, high)
 
 
 def tuning_panel(tuning: TuningChart) -> Panel:

@@ -181,9 +181,13 @@ def _left_out(fit: CalibrationFit) -> list[str]:
                 "model's range ends before them (buckling, the plate's edge, the ring around the flange, or a depth "
                 "beyond the atlas)"
             )
+    other = fit.contact is not None and fit.contact.other_wall
+    dome = "neo-Hookean dome of one modulus that stands for this one" if other else "dome"
     for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
         if lost.any():
-            notes.append(f"{injection.label}: {_points(int(lost.sum()))} left out: beyond the limit point of the dome")
+            notes.append(
+                f"{injection.label}: {_points(int(lost.sum()))} left out: beyond the limit point of the {dome}"
+            )
     return notes
 
 

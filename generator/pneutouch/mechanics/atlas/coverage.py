@@ -82,9 +82,7 @@ def stand_in(sensor: Sensor) -> Sensor:
     a plane without the ring that clamps the flange: presses that meet it end there."""
     if sensor.dome.base is not None:
         sensor = sensor.replace(base=RigidBase())
-    if sensor.wall.law is not None and sensor.wall.largest_stretch is not None:
-        sensor = sensor.replace(law=None, largest_stretch=None)
-    return under_plate(sensor.replace(grade=None))
+    return under_plate(sensor.even)
 
 
 _DEPTH = 0.75

@@ -27,7 +27,7 @@ from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluat
 from pneutouch.evaluation.sheet_data import SensitivityCurve
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.evaluation.uncertainty import even_wall, spread, unknown
+from pneutouch.evaluation.uncertainty import spread, unknown
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.models.accuracy import NUMERICAL
@@ -253,7 +253,7 @@ class CandidateSolver:
         """Relative expanded uncertainty of the sensitivity under the contact, from the candidate's solved state: the
         budget of `predict` at that driving pressure. NaN if unknown."""
         scene, sensor = self.drawn(resin, pool)
-        sensor = even_wall(sensor)
+        sensor = sensor.even
         if unknown(sensor, "solid") is not None:
             return np.nan
         material, printer = scene.membrane_material, scene.printer
@@ -266,7 +266,7 @@ class CandidateSolver:
     ) -> tuple[Array, Array] | None:
         """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None if not known."""
         scene, sensor = self.drawn(resin, pool)
-        sensor = even_wall(sensor)
+        sensor = sensor.even
         if unknown(sensor, "solid") is not None:
             return None
         material, printer = scene.membrane_material, scene.printer

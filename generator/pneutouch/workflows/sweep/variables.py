@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, even_wall, spread, why_unknown
+from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, spread, why_unknown
 from pneutouch.mechanics import Sensor, SensorState
 from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
@@ -147,7 +147,7 @@ def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
 def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[list[Interval]]:
     """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as ``predict`` states them;
     None where it is unknown. All sensors in one pass through the atlas."""
-    spreads = [_spread(each, even_wall(each.sensor)) for each in evaluations]
+    spreads = [_spread(each, each.sensor.even) for each in evaluations]
     together = [(each.batch, each.sources) for each in spreads if each is not None and each.contact is None]
     budgets = iter(propagate_groups(together) if together else ())
     intervals: list[list[Interval]] = []
