@@ -269,8 +269,7 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
     pressure = np.concatenate([np.zeros_like(highest), highest])
     resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
     batch = problem.batch(resin, radius, wall, pressure)
-    groups = np.repeat([0, 1], highest.size)
-    none, most = respond(batch, problem.steps, problem.atlas, groups).lines.sensitivity.reshape(2, -1)
+    none, most = respond(batch, problem.steps, problem.atlas).lines.sensitivity.reshape(2, -1)
     return highest, (none, most)
 
 

@@ -259,6 +259,29 @@ def test_inflation_ends_on_the_root_wherever_its_bracket_lies():
     ratio = np.sort(draw.uniform(0.1, 0.2, 200))
     slices, k = shipped().slices(ratio), np.repeat(np.arange(200), 20)
     pressure = draw.uniform(0.05, 0.9, k.size) * slices.limit_pressure[k]
-    nu = _inflated(slices, k, pressure, np.arange(k.size))
+    nu = _inflated(slices, k, pressure)
     reached = slices.point(k, nu, slices.free_apex(k, nu)[:, 0]).pressure
     assert np.abs(reached / pressure - 1.0).max() < 1e-12
+
+
+def test_a_range_that_the_gauge_ends_does_so_at_its_limit_to_five_digits():
+    """What is left of the end's place is noise in every derivative, and so in every interval."""
+    draw = np.random.default_rng(11)
+    size = 400
+    radius, modulus = draw.uniform(5.0, 15.0, size), draw.uniform(0.15, 1.0, size)
+    batch = SensorBatch(
+        inner_radius=radius,
+        wall_thickness=draw.uniform(0.1, 0.3, size) * radius,
+        shear_modulus=modulus,
+        ambient_pressure=np.full(size, 0.101325),
+        dead_volume=draw.uniform(0.0, 1500.0, size),
+        driving_pressure=np.zeros(size),
+        depth=0.6 * radius,
+        plate_radius=np.full(size, np.inf),
+        gauge_limit=draw.uniform(0.002, 0.05, size),
+        break_stretch=np.full(size, np.inf),
+    )
+    found = respond(batch)
+    ended = found.ends == GAUGE
+    assert ended.sum() > 100
+    np.testing.assert_allclose(found.rise[ended, -1], batch.gauge_limit[ended], rtol=1e-5)

@@ -95,7 +95,7 @@ def test_few_degrees_of_freedom_are_told(library):
 
 
 def test_groups_in_one_pass_are_the_groups_one_by_one(library):
-    """Ends of ranges close in group by group: a sensor's figures do not depend on what else is in the pass."""
+    """Ends of ranges close in sensor by sensor: figures do not depend on what else is in the pass."""
     groups = []
     for case in TEN[:5]:
         batch = batch_for(library, case)

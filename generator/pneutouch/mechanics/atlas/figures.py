@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
@@ -95,14 +95,11 @@ def unit_step(batch: SensorBatch) -> Array:
     return steps
 
 
-def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
-    """Natural logarithms of the figures, (figures, n); NaN for a missing figure. Units as stated in `FIGURES`.
-
-    ``groups`` as in `respond`.
-    """
+def log_figures(batch: SensorBatch) -> Array:
+    """Natural logarithms of the figures, (figures, n); NaN for a missing figure. Units as stated in `FIGURES`."""
     # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
     order = np.argsort(batch.wall_ratio, kind="stable")
-    response = respond(batch.take(order), atlas=neighbourhood(), groups=None if groups is None else groups[order])
+    response = respond(batch.take(order), atlas=neighbourhood())
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
         response.lines.sensitivity,

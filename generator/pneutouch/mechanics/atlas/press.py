@@ -106,19 +106,17 @@ class AtlasSolution(NamedTuple):
 class AtlasPress:
     """A batch with its slices of the atlas, its gas and its inflated states; all attributes nondimensional.
 
-    ``groups`` (n,), numbered from 0, joins several calls in one, because the overhead of a call dominates: the sensors
-    of a group end their iterations together, so that each group has the same result as in a call of its own.
+    Every sensor ends its iterations by itself: its states are the same in any batch.
     """
 
-    def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index, groups: Index | None = None) -> None:
+    def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index) -> None:
         self.batch, self.slices, self.k = batch, slices, k
-        self.groups = np.zeros(len(batch), dtype=np.intp) if groups is None else groups
         mu, radius = batch.shear_modulus, batch.inner_radius
         self.pressure = batch.driving_pressure / mu
         self.ambient = batch.ambient_pressure / mu
         self.dead = batch.dead_volume / radius**3
         self.reach, self.limit = slices.reach(k), slices.limit_pressure[k]
-        self.free = _inflated(slices, k, self.pressure, self.groups)
+        self.free = _inflated(slices, k, self.pressure)
         self.apex = slices.free_apex(k, self.free)[:, 0]
         gas_volume = self.volume(self.free) + self.dead
         self.content = (self.pressure + self.ambient) * gas_volume
@@ -131,7 +129,7 @@ class AtlasPress:
         """Press of the selected sensors, with their inflated states."""
         part = object.__new__(AtlasPress)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
-        for name in ("groups", "pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
+        for name in ("pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
             setattr(part, name, getattr(self, name)[rows])
         return part
 
@@ -157,10 +155,10 @@ class AtlasPress:
             excess = gas - self.ambient - stiffening * point.pressure - memory
             step = excess / np.where(margin > 0, margin, 1.0) / self.reach
             reached = np.abs(step) < _LAST_STEP
-            moving = waiting(self.groups, reached | (margin <= 0))
+            moving = ~reached & (margin > 0)
             if not moving.any():
                 break
-            nu = nu + np.where(moving & (margin > 0), np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
+            nu = nu + np.where(moving, np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
         step = np.where(reached, step, 0.0)
         swell = step * self.reach
         point = point._replace(
@@ -202,12 +200,7 @@ class AtlasPress:
         return [values.reshape(track.nu.shape) for values in flat]
 
 
-def waiting(groups: Index, settled: Flags) -> Flags:
-    """True for the sensors, (n,), whose group has at least one sensor that is not settled."""
-    return np.asarray(np.bincount(groups, weights=~settled)[groups] > 0.0)
-
-
-def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> Array:
+def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:
     """Volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
 
     Newton's method inside a bracket, with bisection where a step would leave it: the slope vanishes at the limit point.
@@ -227,7 +220,7 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> 
         inside = (newton >= low) & (newton <= high) & (slope > 0)
         step = np.where(inside, newton, 0.5 * (low + high)) - nu
         nu = nu + np.where(moving, step, 0.0)
-        moving = moving & waiting(groups, np.abs(step) < _CLOSE)
+        moving &= np.abs(step) >= _CLOSE
         if not moving.any():
             break
     return nu

@@ -102,8 +102,7 @@ MODEL = AtlasTables()
 def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answered]:
     """Answers for sensors with the same number of steps, in one pass."""
     batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, driving_pressures, strict=True)])
-    # Each pressure is a group of its own: its figures do not depend on the others.
-    passed = run(batch, sensors[0].protocol.steps, shipped(), np.arange(len(batch)), FIELDS)
+    passed = run(batch, sensors[0].protocol.steps, shipped(), FIELDS)
     fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
     ends = np.cumsum([len(pressures) for pressures in driving_pressures])
     rows = zip(sensors, ends.tolist(), driving_pressures, strict=True)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Index
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved, neighbourhood, unit_step
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
@@ -66,12 +66,7 @@ class Derivatives:
 
 
 def derivatives(
-    batch: SensorBatch,
-    standard: Array,
-    kurtosis: Array,
-    step: float = STEP,
-    shift: ContactShift | None = None,
-    groups: Index | None = None,
+    batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP, shift: ContactShift | None = None
 ) -> Derivatives:
     """Derivatives of the figures of n sensors by a small step in every input, and over its spread.
 
@@ -81,7 +76,6 @@ def derivatives(
         kurtosis: Fourth moment over squared variance of each input's deviation, (inputs, n).
         step: Half of the central difference, relative.
         shift: Change of the figures from the plate to another contact.
-        groups: Group numbers from 0 on, (n,), of calls joined in one; see `respond`.
     """
     unit = unit_step(batch)
     widest = standard.max(axis=1)
@@ -89,7 +83,7 @@ def derivatives(
     offsets = (step * unit, -step * unit, far, -far)
     rows = [moved(batch, name, offset[i]) for i, name in enumerate(INPUTS) for offset in offsets]
     every, size = SensorBatch.join([batch, *rows]), len(batch)
-    logs = log_figures(every, None if groups is None else np.tile(groups, 1 + len(rows)))
+    logs = log_figures(every)
     if shift is not None:
         by = np.log(every.shear_modulus.reshape(-1, size) / batch.shear_modulus)
         logs = logs + shift.at(by).reshape(logs.shape)
@@ -221,9 +215,7 @@ def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]
     spreads = [_by_input(batch, sources) for batch, sources in groups]
     standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
     sizes = [len(batch) for batch in batches]
-    slopes_of = derivatives(
-        SensorBatch.join(batches), standard, kurtosis, groups=np.repeat(np.arange(len(groups)), sizes)
-    )
+    slopes_of = derivatives(SensorBatch.join(batches), standard, kurtosis)
     return [
         _combined(sources, slopes_of.part(slice(end - size, end)), None)
         for (_, sources), size, end in zip(groups, sizes, np.cumsum(sizes), strict=True)
