@@ -20,11 +20,12 @@ _LOOKS = (PlotLine(tone=INK, dashes=LINES[0], width=1.6), PlotLine(tone=ACCENT, 
 """Line styles of the lowest and the highest driving pressure."""
 
 _MARKED = 5
-"""Number of points of a curve per mark."""
+"""A marker is drawn at one in this many points of a curve."""
 
 
 def contact_line(chart: ContactChart | str | None) -> str:
-    """One line on contact that is not central: a ball's reading, and the uncertainty of unknown place and object."""
+    """Text for the first page: error of the reading under a central ball, and the uncertainty that an unknown contact
+    adds; if ``chart`` is None or a reason, "Not stated" with the reason."""
     if chart is None or isinstance(chart, str):
         return f"Not stated: {chart or ''}."
     central = (row for row in chart.rows if row.kind == "ball" and not row.offset)
@@ -42,7 +43,7 @@ def contact_line(chart: ContactChart | str | None) -> str:
 
 
 def contact_section(chart: ContactChart | str | None) -> list[SheetBlock]:
-    """Charts, table and notes; only the reason if the table does not cover the sensor."""
+    """Section with charts, table and notes; with the reason alone if ``chart`` is a reason or None."""
     title = "Contact that is not central"
     if chart is None or isinstance(chart, str):
         return section(title, Text(f"Not stated: {chart or ''}."))
@@ -60,8 +61,7 @@ def contact_section(chart: ContactChart | str | None) -> list[SheetBlock]:
 
 
 def contact_panels(chart: ContactChart) -> list[Panel]:
-    """Error of the force read over the radius of a ball or an edge, their offset, and the tilt of a plate; their
-    vertical axes are the same."""
+    """Three panels, equal in height, of the error of the force read: over radius, over offset, over tilt."""
     charts = (
         (chart.by_radius, chart.edges_by_radius, "radius, contact central  (mm)", "x"),
         (chart.by_offset, chart.edges_by_offset, "offset from the axis  (mm)", ""),
@@ -91,7 +91,7 @@ def contact_panels(chart: ContactChart) -> list[Panel]:
 
 
 def _curves(curves: ErrorCurves, words: list[str] | None = None) -> list[PlotLine]:
-    """One curve per driving pressure; curves of edges, without words, are thin and marked."""
+    """One line for each driving pressure, labelled by ``words``; without them (edges of bars) thin with markers."""
     lines = [replace(look, x=curves.along, y=y) for y, look in zip(curves.errors_percent, _LOOKS, strict=False)]
     if words is None:
         return [replace(line, width=0.9, marker=MARKERS[0], every=_MARKED) for line in lines]
@@ -99,7 +99,7 @@ def _curves(curves: ErrorCurves, words: list[str] | None = None) -> list[PlotLin
 
 
 def _named(curves: ErrorCurves, name: str) -> list[Note]:
-    """The name of the pressing object next to the curve of the lowest driving pressure."""
+    """A note with the object's name at its curve for the lowest driving pressure; none if the curve is all NaN."""
     errors_percent = curves.errors_percent[0]
     known = np.flatnonzero(np.isfinite(errors_percent))
     if not known.size:

@@ -1,4 +1,4 @@
-"""The blocks that a sheet is made of: built once, and set as a page and as a PDF by one template each."""
+"""The blocks of which a sheet consists; one template writes them as an HTML page, another sets them as a PDF."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import TypeVar
 Row = Sequence["str | Cell"]
 
 _SHORT, _SENTENCE = 22, 40
-"""Letters up to which a cell is never broken, and above which it is a sentence."""
+"""A cell of at most ``_SHORT`` letters is never broken into lines; one of more than ``_SENTENCE`` is a sentence."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell with a small second line, or in bold."""
+    """A cell of a table: its text, a small second line ``note``, and True in ``strong`` for bold."""
 
     text: str
     note: str = ""
@@ -33,7 +33,7 @@ def _letters(cell: str | Cell) -> int:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading of level 2 (a section) or 3; level 1 begins a part of the sheet, on a page of its own."""
+    """A heading: level 1 begins a part of the sheet, on a new page; 2 is a section, 3 a subsection."""
 
     text: str
     level: int = 2
@@ -41,7 +41,7 @@ class Heading:
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph; ``look``: ``muted``, ``strong``, ``status`` or ``warning`` (in a frame)."""
+    """A paragraph; ``look`` is ``muted``, ``strong``, ``status`` or ``warning`` (both in a frame), or empty: plain."""
 
     text: str
     look: str = ""
@@ -57,16 +57,16 @@ class Items:
 
 @dataclass(frozen=True)
 class SheetTable:
-    """A table; one without a head states facts: what, value, unit, and a longer last cell.
+    """A table; in one without a head each row states a fact, such as name, value, unit and a longer note.
 
     Attributes:
         rows: Cells; a table without rows is left out.
         head: Names of the columns; ``\\n`` ends a line.
-        numeric: Columns that stand on the right.
-        strong: Rows in bold.
-        turned: True for few rows that become columns on a narrow screen.
-        small: True for a table that stays one on a narrow screen.
-        merged: Number of first columns of which cells equal to those above are not repeated.
+        numeric: Numbers of the columns that are aligned right.
+        strong: Numbers of the rows in bold.
+        turned: True if rows become columns on a narrow screen; done for fewer than six rows.
+        small: True if the table keeps its form on a narrow screen, where others have a block for each row.
+        merged: Number of leading columns; consecutive rows that are equal in all of them show their cells once.
         dense: True for small letters: many columns.
     """
 
@@ -81,21 +81,21 @@ class SheetTable:
 
     @property
     def names(self) -> list[str]:
-        """Names of the columns in one line each, the unit behind a comma."""
+        """Names of the columns on one line each, with a comma before what was their last line, the unit."""
         units = [name.rpartition("\n") for name in self.head]
         return [", ".join(filter(None, (name.replace("\n", " ").rstrip(","), unit))) for name, _, unit in units]
 
     @property
     def lengths(self) -> list[int]:
-        """Letters of the longest line of each column."""
+        """Number of letters of the longest line in each column, its name included."""
         columns = zip(*([self.head] if self.head else []), *self.rows, strict=True)
         return [max(map(_letters, column)) for column in columns]
 
     @property
     def weights(self) -> list[int]:
-        """Share of each column in the free width; 0 for a column that is as wide as its cells.
+        """Relative shares of the columns in the free width; 0 for a column that is as wide as its cells.
 
-        Beside sentences short columns are narrow; without them all columns but those of numbers share it.
+        With a head and no sentence all columns but numeric ones share it; else those with long cells, or the last one.
         """
         lengths = [0 if k in self.numeric else length for k, length in enumerate(self.lengths)]
         if self.head and 0 < max(lengths) <= _SENTENCE:
@@ -105,18 +105,18 @@ class SheetTable:
 
     @property
     def long(self) -> list[int]:
-        """Columns of sentences."""
+        """Numbers of the columns that hold a sentence."""
         return [k for k, length in enumerate(self.lengths) if length > _SENTENCE]
 
     @property
     def groups(self) -> list[list[Row]]:
-        """Rows with the same first cells, those that are merged, together."""
+        """Lists of consecutive rows that are equal in their first ``merged`` cells; all rows if that is 0."""
         return [list(rows) for _, rows in groupby(self.rows, lambda row: tuple(map(str, row[: self.merged])))]
 
 
 @dataclass(frozen=True)
 class Plot:
-    """A figure as SVG with its caption; ``full`` over the whole row, ``mm`` its greatest width."""
+    """An SVG figure with title and caption; ``full``: over the whole row, ``mm``: greatest width (0: no bound)."""
 
     svg: str
     caption: str = ""
@@ -127,7 +127,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Plots:
-    """Figures in columns, of relative ``widths``, over one caption."""
+    """Figures in columns of relative ``widths``, with one caption below all of them."""
 
     plots: Sequence[Plot]
     widths: Sequence[int] = (1, 1)
@@ -136,7 +136,7 @@ class Plots:
 
 @dataclass(frozen=True)
 class View:
-    """A body in three dimensions: data (JSON) that a page turns, and the picture (PNG) where nothing turns."""
+    """A 3D view: JSON ``data`` that a page turns, PNG ``image`` elsewhere, alternative text ``words``, a ``scale``."""
 
     name: str
     data: str
@@ -165,7 +165,7 @@ class Tiles:
 
 @dataclass(frozen=True)
 class Columns:
-    """Blocks side by side on one page, each column of a share of the width."""
+    """Columns of blocks side by side, kept together on one page, with relative ``widths``."""
 
     columns: Sequence[Sequence[SheetBlock]]
     widths: Sequence[int] = (1, 1)
@@ -173,7 +173,7 @@ class Columns:
 
 @dataclass(frozen=True)
 class FramedBlocks:
-    """Blocks in a frame under a title, where there is one: what the reader has to see first."""
+    """Blocks in a frame, for statements to be seen first; an empty ``title`` is left out."""
 
     title: str
     blocks: Sequence[SheetBlock]
@@ -184,7 +184,7 @@ SheetBlock = Heading | Text | Items | SheetTable | Plot | Plots | View | Tiles |
 
 @dataclass(frozen=True)
 class Sheet:
-    """A sheet.
+    """A document, such as a datasheet, that is written as an HTML page and as a PDF.
 
     Attributes:
         title: Title of the sheet.
@@ -196,7 +196,7 @@ class Sheet:
         mark: Words on every page, such as that the data are simulated; empty for none.
         mark_note: Words after the mark on the first page.
         blocks: Blocks of the sheet.
-        date: Date of the PDF; None for none.
+        date: Creation date in the PDF; None for the same fixed date in all undated sheets.
     """
 
     title: str
@@ -212,7 +212,7 @@ class Sheet:
 
 
 def section(title: str, *blocks: SheetBlock, level: int = 2) -> list[SheetBlock]:
-    """A heading and its blocks; nothing where none of them holds anything."""
+    """A heading and those of ``blocks`` that are not empty; an empty list if all are empty."""
     held = [block for block in blocks if _holds(block)]
     return [Heading(title, level), *held] if held else []
 
@@ -237,7 +237,7 @@ Kind = TypeVar("Kind")
 
 
 def found(blocks: Sequence[SheetBlock], kind: type[Kind]) -> list[Kind]:
-    """Every block of a kind, those within columns and boxes too, in their order."""
+    """All blocks of class ``kind`` in order, with those inside columns and frames, and the plots of `Plots`."""
     every: list[Kind] = []
     for block in blocks:
         if isinstance(block, kind):

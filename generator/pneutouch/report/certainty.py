@@ -1,4 +1,4 @@
-"""The section "Uncertainty" of a datasheet: intervals, sources and the model, as plain data."""
+"""The section "Uncertainty" of a datasheet: its tables of intervals, sources and model, and the chart of shares."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -33,7 +33,7 @@ _INPUTS = {
 
 
 def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...]) -> dict[str, UncertaintyRecord]:
-    """Uncertainties of the lowest and the highest driving pressure, by label, if something is known of them."""
+    """Uncertainties at the lowest and highest driving pressure by label (``7 kPa``), if sensitivity has an interval."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
     return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY_KEY in d.known}
@@ -46,12 +46,12 @@ def interval(document: UncertaintyRecord, figure: str = SENSITIVITY_KEY) -> str:
 
 
 def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]:
-    """Shares of the variance of the sensitivity by label of the driving pressure."""
+    """Shares of the sources in the variance of the sensitivity, by label of the driving pressure."""
     return {label: dict(document.known[SENSITIVITY_KEY].shares) for label, document in covered.items()}
 
 
 def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBlock]:
-    """Everything in the section; ``plots`` are its charts."""
+    """Blocks of the section with ``plots`` in it; without an interval only the reason and the model."""
     documents, model = sheet.uncertainty, SheetTable(model_rows(sheet))
     covered = ends(sheet.prediction, documents)
     if not covered:
@@ -73,7 +73,7 @@ def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBl
 
 
 def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
-    """Advice on the first thing to measure, one line for driving pressures with the same result."""
+    """Sentences on what to measure first, each with the driving pressures that it holds for."""
     labels_of: dict[str, list[str]] = {}
     for label, document in covered.items():
         labels_of.setdefault(document.summary or "", []).append(label)
@@ -81,7 +81,7 @@ def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    """Figures by the names that the sheet gives them."""
+    """The text with the keys of figures replaced by the sheet's names for them, and +- by ±."""
     for name, (title, _) in _FIGURES.items():
         text = text.replace(name, title.lower())
     return text.replace("+-", "±")
@@ -105,7 +105,7 @@ def _width(document: UncertaintyRecord, name: str) -> str:
 
 
 def _source(source: SourceRecord) -> list[str]:
-    """Name of a source, its standard uncertainty, its effect, known or assumed, and its origin."""
+    """Row on a source: name, standard uncertainty, what it acts on, known or assumed, and its origin."""
     size = source.standard_uncertainty
     value = f"{size:.2g} mL" if source.unit == "mL" else f"{100 * size:.2g} %"
     figures = [_FIGURES[name][0].lower() for name in source.figures]
@@ -114,7 +114,7 @@ def _source(source: SourceRecord) -> list[str]:
 
 
 def model_rows(sheet: SheetData) -> list[list[str]]:
-    """The model of the figures, its numerical error, and why it was chosen."""
+    """Rows on the model: its name, its numerical error, why it was chosen, and the calibration if there is one."""
     prediction, error = sheet.prediction, sheet.numerical_error
     exact = f"within {error:.1%} in sensitivity"
     if prediction.model == "membrane":
@@ -129,7 +129,7 @@ def model_rows(sheet: SheetData) -> list[list[str]]:
 
 
 def _digits(value: float) -> str:
-    """Three significant digits without an exponent."""
+    """A number with three significant digits; one from 100 up is rounded to a whole number."""
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:#.3g}"
 
 
@@ -144,7 +144,7 @@ OTHERS = "all others"
 
 
 def ranked(shares: list[dict[str, float]]) -> dict[str, list[float]]:
-    """Shares of each state by source, greatest mean first; small ones added up as `OTHERS`. Each state sums to 1."""
+    """Shares by source, one for each state, largest sum first; those after the first `_MOST` added up as `OTHERS`."""
     names = {name for local in shares for name in local}
     order = sorted(names, key=lambda name: (-sum(local.get(name, 0.0) for local in shares), name))
     rows_of = {name: [local.get(name, 0.0) for local in shares] for name in order[:_MOST]}
@@ -154,14 +154,14 @@ def ranked(shares: list[dict[str, float]]) -> dict[str, list[float]]:
 
 
 def uncertainty_shares(sheet: SheetData) -> Plot | None:
-    """Bars of the shares of the sources in the variance; None without an interval."""
+    """Bar chart of the shares of the sources in the sensitivity's variance; None without an interval."""
     covered = ends(sheet.prediction, sheet.uncertainty)
     words = "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first."
     return Plot(share_bars(shares(covered)), words, mm=_WIDTH) if covered else None
 
 
 def share_bars(shares: dict[str, dict[str, float]]) -> str:
-    """Bars of the variance shares (source to share) at one or two driving pressures, by label, as SVG."""
+    """SVG bar chart of shares of the variance (0 to 1): by label of one or two driving pressures, then by source."""
     rows = ranked(list(shares.values()))
     with figure(_WIDTH, 11 + 3.9 * len(rows) * max(1.4, len(shares))) as drawn:
         ax = drawn.add_subplot()

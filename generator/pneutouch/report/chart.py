@@ -42,7 +42,7 @@ AxisEnds = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class PlotLine:
-    """A curve or a set of points, ``x`` and ``y`` (n,); one without points is only an entry of the legend.
+    """A curve or a set of points, ``x`` and ``y`` (n,); without points it is only an entry of the legend.
 
     ``label`` stands in the legend, ``end`` right of the axes at the last point. A line
     without ``dashes`` is only points, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
@@ -69,7 +69,7 @@ class PlotLine:
 
 @dataclass(frozen=True)
 class Note:
-    """A small text near a point of the data, on the side (right, up) of it where there is room."""
+    """A small text near the data point ``at``, preferably on its ``side``, a direction (right, up)."""
 
     text: str
     at: tuple[float, float]
@@ -80,7 +80,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Span:
-    """A shaded or hatched stretch of an axis, across the whole of the other axis."""
+    """A shaded or hatched stretch of one axis from ``low`` to ``high``, over the full length of the other axis."""
 
     low: float
     high: float
@@ -92,7 +92,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with quantities and units.
+    """One pair of axes; ``x`` and ``y`` are their titles, with units. An end None in ``xlim`` or ``ylim`` is automatic.
 
     ``log`` and ``zero`` name the axes that are logarithmic or have a line at zero. ``rows`` (from above) and
     ``columns`` are names that stand at 0, 1, 2, ... in place of numbers, ``ticks`` the only numbers of the horizontal
@@ -117,9 +117,9 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``across`` with the common axes ``x`` and ``y``; axes named in ``shared`` have common ends.
+    """Panels in rows of ``across``; ``x`` and ``y`` are titles for all, axes named in ``shared`` have common limits.
 
-    ``size`` is in mm, ``heights`` are the relative heights of the rows; the legend has ``keys`` columns.
+    ``size`` is in mm, ``heights`` are relative heights of the rows (None: equal); the legend has ``keys`` columns.
     """
 
     panels: tuple[Panel, ...]
@@ -134,14 +134,14 @@ class Chart:
 
 
 def drawn_svg(chart: Chart | Panel) -> str:
-    """A chart, or a panel of the usual size, as SVG."""
+    """A chart as SVG; a panel alone is drawn as a chart of the default size."""
     with chart_figure(Chart((chart,)) if isinstance(chart, Panel) else chart) as drawn:
         return svg(drawn)
 
 
 @contextmanager
 def chart_figure(chart: Chart) -> Iterator[Figure]:
-    """A chart as a figure that can be saved within the context."""
+    """The chart as a matplotlib figure, to be saved inside the ``with`` block."""
     down, count = -(-len(chart.panels) // chart.across), len(chart.panels)
     shared: dict[str, Any] = {f"share{axis}": True for axis in chart.shared}
     with figure(*chart.size) as drawn:
@@ -233,7 +233,7 @@ def _shade(ax: Axes, span: Span) -> None:
 
 
 def _ticks(ax: Axes, panel: Panel) -> None:
-    """Numbers or names along the axes."""
+    """Set the numbers or names along the axes."""
     if panel.ticks:
         ax.set_xticks(panel.ticks)
     for axis in panel.log:
@@ -266,5 +266,5 @@ def plain_text(text: str) -> str:
 
 
 def bars_between(x: Iterable[float], low: Iterable[float], high: Iterable[float], look: PlotLine) -> list[PlotLine]:
-    """Upright bars from ``low`` to ``high`` at places ``x``: intervals of single points."""
+    """Upright bars in the style ``look`` from ``low`` to ``high`` at places ``x``: intervals of single points."""
     return [replace(look, x=(at, at), y=(a, b)) for at, a, b in zip(x, low, high, strict=True)]

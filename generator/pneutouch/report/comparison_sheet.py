@@ -1,6 +1,6 @@
 """The sheet of a comparison: what differs, figures with intervals, overlaid curves and sections.
 
-Sensors differ by line and marker, and stay apart in grayscale.
+Sensors differ by line style and marker, so that they can be told apart in grayscale.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.wording import enumerated
 
 MOST = 6
-"""Greatest number of sensors drawn: more cover one another."""
+"""Greatest number of sensors drawn: more would cover one another."""
 
 _SHORT, _CUT = 16, 44
-"""Letters of a name that fits into half the width of a legend, and into all of it."""
+"""Greatest number of letters of a name that fits into half the width of a legend, and into all of it."""
 
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
 _RUNS, _TOLERANCE, _TALLEST = 30, 5e-3, 1.6
@@ -52,7 +52,7 @@ def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]
 
 
 def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sheet:
-    """The whole sheet, its plots drawn."""
+    """The sheet with its plots drawn; ``parts`` are the assemblies by label."""
     labels, tool = words.labels(comparison), f"pneutouch {comparison.pneutouch}"
     title = enumerated(labels)
     compared = [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared]
@@ -83,7 +83,7 @@ _KINDS = {"design": "design, predicted", "build": "build, as predicted when it w
 
 
 def _figures(comparison: ComparisonRecord, pressure_kPa: float | None) -> list[SheetBlock]:
-    """The figures at one driving pressure, or of the whole sensor."""
+    """Table of the figures at one driving pressure, or, for None, of those of the whole sensor."""
     labels, title = words.labels(comparison), words.heading(pressure_kPa)
     head = ("Figure", *labels, *(f"{label}, difference" for label in labels[1:]))
     rows = [_row(row) for row in comparison.figures if row.driving_pressure_kPa == pressure_kPa]
@@ -132,7 +132,7 @@ def _spots(k: int) -> PlotLine:
 
 
 def _legend(looks: Sequence[PlotLine], names: Sequence[str]) -> tuple[list[PlotLine], int]:
-    """Entries of a legend, and its columns: one where a name would not fit into half the width."""
+    """Entries of a legend, long names cut, and its columns: 2 if all names fit into half the width, else 1."""
     entries = [
         replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…")
         for look, name in zip(looks, names, strict=True)
@@ -141,14 +141,14 @@ def _legend(looks: Sequence[PlotLine], names: Sequence[str]) -> tuple[list[PlotL
 
 
 def _drawn(panel: Panel, height: float, looks: Sequence[PlotLine], names: Sequence[str]) -> str:
-    """A panel under the legend of the sensors, as SVG."""
+    """SVG of a panel ``height`` mm high with the legend of the sensors above it."""
     entries, keys = _legend(looks, names)
     high = height + 4 * math.ceil(len(names) / keys)
     return drawn_svg(Chart((replace(panel, lines=(*panel.lines, *entries)),), (SIZE[0], high), keys=keys))
 
 
 def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Panel]) -> list[tuple[str, str]]:
-    """Title and plot by driving pressure: rise over force or force over indentation, all with the same axes."""
+    """Title and SVG at up to four driving pressures, with equal axes; ``draw``: `rises` or `forces`; [] for none."""
     names = words.labels(comparison)[:MOST]
     measured = [one.kind == "measured" for one in comparison.compared]
     looks = [_spots(k) if measured[k] else _look(k) for k in range(len(names))]
@@ -173,7 +173,7 @@ def _press(curve: ComparedCurve, look: PlotLine, *bands: BandEnds | None) -> Pre
 
 
 def _presses(comparison: ComparisonRecord, k: int, pressure_kPa: float) -> list[Press]:
-    """The predicted curve of a sensor with its bands, or the points of its measured runs."""
+    """Curves of sensor ``k`` at a driving pressure: the predicted one with bands, or points of measured runs."""
     name = words.labels(comparison)[k]
     matching = [c for c in comparison.curves if c.label == name and c.driving_pressure_kPa == pressure_kPa]
     bands = [_ends(comparison, key, k, pressure_kPa) for key in (SENSITIVITY_KEY, STIFFNESS_KEY)]
@@ -184,14 +184,14 @@ def _presses(comparison: ComparisonRecord, k: int, pressure_kPa: float) -> list[
 
 
 def _top(comparison: ComparisonRecord, key: str) -> float:
-    """Height of the axis over the greatest value: space for the bands, as far as they do not flatten the curves."""
+    """Axis end over the greatest value: room for the bands, at most `_TALLEST` so that the curves stay legible."""
     shown = [(k, row.driving_pressure_kPa) for row in comparison.figures for k in range(len(row.values[:MOST]))]
     ratios = [matching[1] for k, p in shown if (matching := _ends(comparison, key, k, p)) is not None]
     return min(1.05 * max(ratios, default=1.0), _TALLEST)
 
 
 def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> BandEnds | None:
-    """Ends of a figure's interval, divided by its value."""
+    """Ends of the interval of figure ``key`` of sensor ``k``, divided by its value; None if they are not known."""
     for row in comparison.figures:
         if row.figure == key and row.driving_pressure_kPa == pressure_kPa:
             one = row.values[k]
@@ -201,7 +201,7 @@ def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | 
 
 
 def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
-    """Differences from the first sensor in percent with intervals; filled where one exceeds its uncertainty."""
+    """Untitled SVG of differences from the first sensor, %; filled: more than their uncertainty; [] for none."""
     rows = []
     for row in comparison.figures:
         at = "" if row.driving_pressure_kPa is None else f" {words.heading(row.driving_pressure_kPa)}"
@@ -228,8 +228,8 @@ def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
 
 
 def _span(one: DifferenceRecord | None) -> tuple[float, float, float, bool] | None:
-    """Lower end, value and upper end in percent, and True if the difference exceeds its uncertainty; None without an
-    interval of some width."""
+    """Lower end, value and upper end in percent, and True if the difference exceeds its uncertainty; None if the
+    interval is unknown or has no width."""
     if one is None or one.low_percent is None or one.percent is None or one.high_percent is None:
         return None
     low, percent, high = one.low_percent, one.percent, one.high_percent
@@ -237,7 +237,7 @@ def _span(one: DifferenceRecord | None) -> tuple[float, float, float, bool] | No
 
 
 def sections(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str]]:
-    """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
+    """Untitled SVG of the section outlines of all sensors in ``parts``, base planes at one height; [] for none."""
     names = words.labels(comparison)[:MOST]
     shown = [k for k, name in enumerate(names) if name in parts]
     if not shown:

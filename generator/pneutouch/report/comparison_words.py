@@ -1,4 +1,4 @@
-"""The tables of a comparison in words: the same cells on a terminal, on the page and in the PDF."""
+"""The texts of the tables of a comparison, the same on a terminal, on the page and in the PDF."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +11,7 @@ _DIGITS = 4
 
 
 def labels(comparison: ComparisonRecord) -> list[str]:
-    """Names of the columns."""
+    """Labels of the compared sensors, in order."""
     return [one.label for one in comparison.compared]
 
 
@@ -33,12 +33,12 @@ def _value(value: Any) -> str:
 
 
 def figure_name(row: RowRecord) -> str:
-    """Name and unit of a figure."""
+    """Name of a figure, with its unit if it has one."""
     return f"{row.name}, {row.unit}" if row.unit else row.name
 
 
 def figure_cells(row: RowRecord) -> list[tuple[str, str]]:
-    """Value and interval, one pair per sensor."""
+    """Value and interval of a figure as texts, one pair for each sensor; a dash for an unknown value."""
     return [
         (DASH, "") if one is None else (number(one.value, _DIGITS), _interval(one.value, one.low, one.high))
         for one in row.values
@@ -46,14 +46,14 @@ def figure_cells(row: RowRecord) -> list[tuple[str, str]]:
 
 
 def _interval(value: float, low: float | None, high: float | None) -> str:
-    """The interval; empty if unknown, or no wider than the digits that are shown."""
+    """An interval as text; empty if unknown, or if its ends look the same in the digits shown."""
     if low is None or high is None or number(low, _DIGITS, value) == number(high, _DIGITS, value):
         return ""
     return between((value, low, high), _DIGITS)
 
 
 def difference_cells(row: RowRecord) -> list[tuple[str, str, str]]:
-    """Difference in percent, its interval, and the verdict on it, for each sensor but the first."""
+    """Difference in percent, its interval and `verdict`, for each sensor after the first; a dash if unknown."""
     return [_difference(one) for one in row.differences]
 
 
@@ -68,17 +68,17 @@ def _difference(one: DifferenceRecord | None) -> tuple[str, str, str]:
 
 
 def verdict(exceeds: bool | None) -> str:
-    """Verdict, in a word, on a difference against its uncertainty."""
+    """Comparison of a difference with its uncertainty as a word; "not known" for None."""
     return "not known" if exceeds is None else "exceeds" if exceeds else "within"
 
 
 def pressures(comparison: ComparisonRecord) -> list[float | None]:
-    """The groups of figures: those of the whole sensor (None), then by driving pressure, kPa."""
+    """Driving pressures of the groups of figures, kPa, in the order of the figures; None: the whole sensor."""
     return list(dict.fromkeys(row.driving_pressure_kPa for row in comparison.figures))
 
 
 def heading(pressure_kPa: float | None) -> str:
-    """Title of a group of figures."""
+    """Title of the group of figures at a driving pressure; None: of the whole sensor."""
     return "the sensor" if pressure_kPa is None else f"at {pressure_kPa:g} kPa"
 
 
@@ -93,7 +93,7 @@ def marks(comparison: ComparisonRecord) -> list[str]:
 
 
 def summary(comparison: ComparisonRecord) -> list[str]:
-    """One sentence for each sensor after the first: in which figures the difference exceeds its uncertainty."""
+    """One sentence for each sensor after the first: figures whose difference exceeds its uncertainty."""
     first, *others = labels(comparison)
     sentences = []
     for k, label in enumerate(others):

@@ -1,4 +1,4 @@
-"""Rows on conditions, the gauge, contact off the axis and mixing curves: calculated or quoted, never guessed."""
+"""Rows of a datasheet on environment, gauge, speed, contact off the axis and mixing curves."""
 
 from collections.abc import Sequence
 
@@ -26,7 +26,7 @@ def environment(sheet: SheetData) -> list[list[str]]:
 
 
 def _air(sheet: SheetData) -> list[list[str]]:
-    """Effects of the air at the lowest and the highest driving pressure."""
+    """Rows on zero drift and fast contact at the lowest and the highest driving pressure."""
     gas, states = sheet.gas, sheet.prediction.states
     assert gas is not None
     ends = [0, len(states) - 1] if len(states) > 1 else [0]
@@ -46,7 +46,7 @@ def _air(sheet: SheetData) -> list[list[str]]:
 
 
 def _drift_alone(sheet: SheetData) -> list[list[str]]:
-    """Outside the atlas: the drift from the predicted inflation curve; fast contact is unknown."""
+    """Rows for a sensor outside the atlas: zero drift at the lowest driving pressure; fast contact is unknown."""
     state, drift_kPa_per_K = sheet.prediction.states[0], sheet.zero_drift_kPa_per_K
     at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
     rows = [["Zero drift of the sealed gas", f"{drift_kPa_per_K:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
@@ -57,7 +57,7 @@ def _drift_alone(sheet: SheetData) -> list[list[str]]:
 
 
 def gauge_range(sheet: SheetData) -> list[str]:
-    """Range, unit and note of the gauge."""
+    """Cells on the gauge: the range that it reads, its unit, and a note on it."""
     gauge, reading = sheet.scene.gauge, sheet.gauge
     note = f"{reading.title}, the paper's, assumed"
     if gauge is not None:
@@ -71,7 +71,7 @@ def gauge_range(sheet: SheetData) -> list[str]:
 
 
 def _breakable(code: str) -> str:
-    """An order code that a narrow column may break, at a space of no width after every eighth character."""
+    """An order code with a space of no width after every eighth character, at which a narrow column may break it."""
     return "\u200b".join(code[start : start + 8] for start in range(0, len(code), 8))
 
 
@@ -86,7 +86,7 @@ def gauge_volume(sheet: SheetData) -> str:
 
 
 def detection(sheet: SheetData) -> list[list[str]]:
-    """Rows of quantity, value and basis: the smallest force, and the warming that reads the same."""
+    """Rows (quantity, value, basis) on the smallest force detected, also at first contact, where it is known."""
     reading, forces = sheet.gauge, sheet.gauge.states
     ends = forces if len(forces) < 2 else (forces[0], forces[-1])
     at = " and ".join(f"{one.driving_pressure_kPa:g}" for one in ends) + " kPa"
@@ -104,7 +104,7 @@ def detection(sheet: SheetData) -> list[list[str]]:
 
 
 def speed_rows(sheet: SheetData) -> list[list[str]]:
-    """Rows of quantity, value and basis at the lowest and the highest driving pressure; empty without the figures."""
+    """Rows (quantity, value, basis) on speed at the lowest and highest driving pressure; none if not computed."""
     if sheet.speed is None:
         return []
     first = {state.driving_pressure_kPa: state for state in reversed(sheet.speed.states)}
@@ -168,7 +168,7 @@ _SHEAR_NOTE = (
 
 
 def off_axis(states: tuple[SensorState, ...]) -> list[SheetBlock]:
-    """Tables of contact off the axis, and of an object that moves sideways after pressing; nothing without them."""
+    """Tables on contact off the axis and on an object that then moves sideways; none without such contact."""
     blocks: list[SheetBlock] = []
     tables = (_off_axis_rows(states), _OFF_AXIS, _OFF_AXIS_NOTE), (shear_rows(states), _SHEAR, _SHEAR_NOTE)
     for rows, head, words in tables:
@@ -226,7 +226,7 @@ _BEYOND = (
 
 
 def mixing_section(sheet: SheetData) -> list[SheetBlock]:
-    """The table by every mixing curve: one row per figure, one column per curve, the softest first."""
+    """Section on the design by each of its mixing curves, a column each, softest first; none without curves."""
     curves = sheet.curves
     head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in curves), "Unit"]
     rows = [["Mean shear modulus", *(f"{one.by_curve.shear_modulus_MPa.nominal:.2f}" for one in curves), "MPa"]]

@@ -1,4 +1,4 @@
-"""Force, rise, sensitivity and inflation curves: one function each, for predictions and measurements alike."""
+"""Charts of presses, predicted or measured, and of the sensitivity, inflation and deformed wall of a prediction."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ BandEnds = tuple[float, float]
 
 @dataclass(frozen=True)
 class Press:
-    """A press, predicted or measured: curves of common points, (n,) each, and their look.
+    """A predicted or measured press: curves over the same points, (n,) each, and their look.
 
     Attributes:
         indentation: Indentation, mm.
         force: Contact force, N.
         rise_kPa: Pressure rise, kPa.
-        look: PlotLine that is drawn in the same way.
-        rise_band: Ends of the rise's band over its value; None without one.
-        force_band: The same for the force.
+        look: PlotLine whose style the curves take; its points are ignored.
+        rise_band: Lower and upper end of the rise's band, divided by the rise; None for no band.
+        force_band: Lower and upper end of the force's band, divided by the force; None for no band.
     """
 
     indentation: Array
@@ -48,26 +48,26 @@ class Press:
 def predicted_press(
     state: SensorState, look: PlotLine, rise_band: BandEnds | None = None, force_band: BandEnds | None = None
 ) -> Press:
-    """The press of a predicted state up to the end of its range."""
+    """The press of a predicted state up to the end of its range, with the bands as in `Press`."""
     kept = state.indentation <= state.range_end * _ROUNDING
     curves = state.indentation[kept], state.force[kept], state.pressure_rise[kept] / KPA
     return Press(*curves, look, rise_band, force_band)
 
 
 def state_look(k: int, pressure_kPa: float) -> PlotLine:
-    """The look of the curve of state number ``k`` of a design."""
+    """Style of the curve of state number ``k`` of a design; its driving pressure stands in the legend."""
     marker, tone = MARKERS[k % len(MARKERS)], INK if k % 2 == 0 else ACCENT
     return PlotLine(label=f"{pressure_kPa:g} kPa", tone=tone, dashes=LINES[k % len(LINES)], marker=marker)
 
 
 def rises(presses: Sequence[Press]) -> Panel:
-    """Pressure rise over contact force."""
+    """Panel of pressure rise over contact force, a line for each press."""
     lines = tuple(_banded(one.look, one.force, one.rise_kPa, one.rise_band) for one in presses)
     return Panel("contact force  (N)", "pressure rise  (kPa)", lines, xlim=(0, None), ylim=(0, None))
 
 
 def forces(presses: Sequence[Press]) -> Panel:
-    """Contact force over indentation."""
+    """Panel of contact force over indentation, a line for each press."""
     lines = tuple(_banded(one.look, one.indentation, one.force, one.force_band) for one in presses)
     return Panel("indentation  (mm)", "contact force  (N)", lines, xlim=(0, None), ylim=(0, None))
 
@@ -78,7 +78,7 @@ def _banded(look: PlotLine, x: Array, y: Array, ends: BandEnds | None) -> PlotLi
 
 
 def sensitivities(lines: Sequence[PlotLine], notes: Sequence[Note] = (), caption: str = "") -> Panel:
-    """Sensitivity (kPa/N) over driving pressure (kPa); the axes hold all lines, bands and points."""
+    """Panel of sensitivity (kPa/N) over driving pressure (kPa), with limits that hold all lines and bands."""
     heights = [value for one in lines for values in (one.y, one.high) if values is not None for value in values]
     right = max((float(value) for one in lines for value in one.x), default=0.0)
     across = "\n".join(["driving pressure  (kPa)", *([caption] if caption else [])])
@@ -88,7 +88,7 @@ def sensitivities(lines: Sequence[PlotLine], notes: Sequence[Note] = (), caption
 
 
 def published_points(published_kPa_per_N: Mapping[float, float]) -> list[PlotLine]:
-    """Published sensitivities by driving pressure, kPa."""
+    """Points of published sensitivities, given by driving pressure in kPa; none if there are none."""
     x, y = list(published_kPa_per_N), list(published_kPa_per_N.values())
     look = PlotLine(x, y, "published measurement", dashes="", marker="D", size=4.5, over=5)
     return [look] if x else []
@@ -102,10 +102,9 @@ def resin_sensitivities(
 ) -> Panel:
     """Sensitivity over driving pressure for every resin, with the predicted states of the design on its curve.
 
-    ``curves`` are by label; where that of the design's resin, ``chosen``, is missing or does not hold its states (a
-    graded or a calibrated membrane), a curve through its states is drawn as well.
-    ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very sensor, where
-    there are any.
+    ``curves`` are by label. If the curve of the design's resin, ``chosen``, is missing or does not pass the design's
+    states (a graded or calibrated membrane), a curve through these states is drawn as well. ``published_kPa_per_N``
+    maps driving pressures (kPa) to sensitivities measured on this very sensor; it may be empty.
     """
     states = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in prediction.states if s.figures]
     states_kPa, predicted = np.array(states).reshape(-1, 2).T
@@ -119,24 +118,24 @@ def resin_sensitivities(
 
 
 def _compared(k: int, label: str, picked: bool, x: Array, y: Array) -> PlotLine:
-    """A curve among others with its name at its end; the one that the chart is about is thick."""
+    """Curve number ``k`` among others with its label at its end; thick if it is ``picked``."""
     if picked:
         return PlotLine(x, y, end=label, tone=ACCENT, width=2.0, picked=True, over=3.5)
     return PlotLine(x, y, end=label, tone=MUTED, width=0.8, dashes=LINES[k % 4])
 
 
 _OFF = 0.03
-"""Greatest share by which a resin's curve may miss the design's states (model error) and still count as its curve."""
+"""Greatest relative distance of a design's states from a resin's curve that still counts as theirs (model error)."""
 
 
 def _holds(curve: SensitivityCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
-    """True if a curve runs through points."""
+    """True if a curve passes all points, (n,) each, within the share `_OFF`."""
     at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity)
     return bool((np.abs(at - sensitivities_kPa_per_N) <= _OFF * sensitivities_kPa_per_N).all())
 
 
 def inflation(prediction: SensorPrediction) -> Panel:
-    """Driving pressure over inner apex height, both branches, with the limit point and the other limits."""
+    """Panel of driving pressure over inner apex height before and beyond the limit point, with the limits."""
     curve, point, states = prediction.inflation, prediction.limit_point, prediction.states
     height, p = curve.apex_inner, curve.pressure / KPA
     peak, gauge_kPa = int(np.argmax(p)), prediction.limits.gauge / KPA
@@ -206,7 +205,7 @@ def shapes(prediction: SensorPrediction) -> str:
 
 
 def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> None:
-    """One deformed half section over the unloaded one."""
+    """Draw one deformed half section over the unloaded one, with the object that presses it."""
     from matplotlib.collections import PolyCollection
 
     look: dict[str, Any] = {"cmap": colours.cmap, "norm": colours.norm, "edgecolors": "face", "lw": 0.2}

@@ -42,19 +42,19 @@ CHARTS: tuple[tuple[str, Callable[[SheetData], Plot | None]], ...] = (
     ("graded", graded.graded_response),
     ("uncertainty", uncertainty_shares),
 )
-"""Section and function of every chart, in the order of the sheet: a chart without data is left out."""
+"""Section and drawing function of every chart, in the sheet's order; a function returns None without data."""
 
 _PIXELS = (900, 640)
-"""Width and height of the picture."""
+"""Width and height of the picture, pixels."""
 
 
 def datasheet(sheet: SheetData) -> dict[str, bytes]:
-    """``datasheet.html``, with the 3D view and, where that cannot be drawn, a picture; and ``datasheet.pdf``."""
+    """Files by name: ``datasheet.html``, with a 3D view (a picture where no script runs), and ``datasheet.pdf``."""
     return set_sheet(described(sheet), "datasheet")
 
 
 def described(sheet: SheetData) -> Sheet:
-    """The whole sheet, its charts drawn."""
+    """The datasheet with its charts drawn."""
     document = sheet.scene.design.document
     date = document.date.isoformat() if document.date else "undated"
     number, tool, status = print_sheet.part_number(sheet.scene), f"pneutouch {__version__}", prose.status(sheet.scene)
@@ -86,7 +86,7 @@ def described(sheet: SheetData) -> Sheet:
 
 
 def _charts(name: str, sheet: SheetData) -> list[Plot]:
-    """The charts of a section."""
+    """The plots of the section ``name`` in `CHARTS` that have data."""
     drawn = (draw(sheet) for place, draw in CHARTS if place == name)
     return [plot for plot in drawn if plot is not None]
 
@@ -130,7 +130,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
 
 
 def _shapes(sheet: SheetData) -> SheetBlock:
-    """Half sections of the deformed wall, or why there are none."""
+    """Half sections of the deformed wall, or a sentence on why there are none."""
     state = sheet.prediction.states[0]
     if state.shapes:
         words = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 def section_drawing(assembly: Assembly, body: Array | None = None) -> dict[str, str]:
     """Section through the axis, and the plan from above, as SVG: ``drawing`` and ``plan``.
 
-    ``body`` (n, 2), x and z in mm, is the section of what presses the dome; drawn to scale where it is given.
+    ``body`` (n, 2), x and z in mm, is the outline of the object that presses the dome; None: no object is drawn.
     """
     with figure(_WIDE, 76) as drawn:
         ax = drawn.add_subplot()
@@ -51,14 +51,14 @@ def section_drawing(assembly: Assembly, body: Array | None = None) -> dict[str, 
 
 
 _OBJECT = 0.6
-"""Height of an object that is drawn above the dimensions, over the dome's radius."""
+"""Height left above the dimensions for the pressing object, divided by the dome's outer radius."""
 
 _WIDE, _NARROW = 112.0, 68.0
 """Widths of section and plan in mm: together the width of a page."""
 
 
 class _Section:
-    """The section and where its dimensions go: ``unit`` is the drawing's step in mm."""
+    """The section drawing with its dimensions; ``unit`` is the step, mm, by which they are spaced."""
 
     def __init__(self, ax: Axes, assembly: Assembly) -> None:
         layout, mount = assembly.layout, assembly.scene.mount
@@ -89,7 +89,7 @@ class _Section:
         _finish(self.ax, "Section A-A", xs, (self.low - 7.5 * self.unit, high))
 
     def _body(self, body: Array, high: float) -> None:
-        """Draw the pressing object in the dashes of a neighbouring part, cut off at the end of the drawing."""
+        """Draw the pressing object, outline (n, 2), dashed as a neighbouring part, up to the height ``high`` in mm."""
         wide = self.layout.plate_radius
         shown = (body[:, 1] <= high) & (np.abs(body[:, 0]) <= wide)
         self.ax.plot(np.where(shown, body[:, 0], np.nan), body[:, 1], color=INK, lw=THIN, ls=NEIGHBOUR)
@@ -132,7 +132,7 @@ class _Section:
         self._extra()
 
     def _extra(self) -> None:
-        """Labels of a ring, a plug, a boss or a sleeve."""
+        """Draw the notes at a ring, a plug, a boss or a sleeve."""
         layout, unit, seat, mount = self.layout, self.unit, self.assembly.scene.seat, self.assembly.scene.mount
         at = (-6.5 * unit, self.bottom - 1.0 * unit)
         if isinstance(seat, ClampedFlange):
@@ -160,7 +160,7 @@ class _Section:
             leader(self.ax, spot, (self.left - 0.5 * unit, self.bottom - 1.5 * unit), text, "right")
 
     def _set_screws(self, mount: Sleeve) -> None:
-        """Hole of a set screw, turned into the section on the side away from the port, and what to do with it."""
+        """Draw a set screw's hole, turned into the section on the side away from the port, and its note."""
         height, radius = self.layout.plate_low - 0.5 * mount.sleeve_length, _screw_radius(self.assembly.scene, mount)
         inner, outer = _sleeve_radii(self.assembly.scene, mount)
         across, along = (
@@ -208,7 +208,7 @@ def _plan(ax: Axes, assembly: Assembly) -> None:
 
 
 def _side_port(ax: Axes, assembly: Assembly) -> None:
-    """The outline of a port in the side, as it shows from above."""
+    """Draw the outline of a port in the side as seen from above."""
     layout = assembly.layout
     points = [layout.port.hollow[0], *(point for point, _ in layout.port.outside)]
     xs = [layout.plate_radius + height for _, height in points]
@@ -218,7 +218,7 @@ def _side_port(ax: Axes, assembly: Assembly) -> None:
 
 
 def _holes(ax: Axes, assembly: Assembly, unit: float) -> None:
-    """Notes on the mounting holes."""
+    """Draw the notes on the mounting holes; for a sleeve the hidden edges of its holes for set screws."""
     layout, scene = assembly.layout, assembly.scene
     mount, rigid = scene.mount, scene.connector_printer.accuracy_mm.nominal
     if isinstance(mount, Sleeve):

@@ -1,4 +1,4 @@
-"""Charts of fits and records: a fitted law, residuals of a calibration, a load and its reading, a run's evidence."""
+"""Charts as SVG: a fitted law, residuals of a calibration, the response to a load, and a measured run."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA, ML
 
 _BAND = 5.0
-"""Per cent within which a law is good enough."""
+"""Difference from the data, %, up to which a law is good enough; drawn as a band."""
 
 _TONES = (INK, ACCENT, MUTED)
 
 
 class LawCurve(NamedTuple):
-    """A law: nominal stress (MPa) over stretch, and its relative differences to the data at stretches ``off_at``."""
+    """A law: nominal stress (MPa) over stretch, (n,), and its relative difference ``off`` from data at ``off_at``."""
 
     label: str
     stretch: Array
@@ -32,9 +32,10 @@ class LawCurve(NamedTuple):
 
 
 def law_chart(data: Sequence[tuple[Array, Array]], laws: Sequence[LawCurve], largest: float) -> str:
-    """Nominal stress over stretch, specimens as points and laws as lines with a band of 5 %, and below the difference.
+    """SVG of nominal stress over stretch: specimens as points, laws as lines; below, law less measured in percent.
 
-    SVG. Laws differ by line and shade, specimens by marker, so that they can be distinguished in grayscale.
+    ``data``: stretch and stress of each specimen. The first law has a band of 5 %; tension was fitted up to
+    ``largest``.
     """
     point = PlotLine(dashes="", tone=MUTED, size=2.6)
     top = [
@@ -70,10 +71,9 @@ def law_chart(data: Sequence[tuple[Array, Array]], laws: Sequence[LawCurve], lar
 
 
 def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> str:
-    """Model less measured: force and pressure over indentation, and pressure over injected volume where there are
-    injections.
+    """SVG, ``size`` in mm, of model less measured: force and pressure over indentation, pressure over injected volume.
 
-    Pressures differ by marker, line and shade, so that they can be distinguished in grayscale. SVG, ``size`` in mm.
+    Panels without runs are left out. Driving pressures differ by marker, line and shade, also in grayscale.
     """
     curves, pushed = [run for run in runs if run.force.size], [run for run in runs if not run.force.size]
     pressure, force = "pressure, model less\nmeasured  (kPa)", "force, model less\nmeasured  (N)"
@@ -96,7 +96,7 @@ def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> s
 
 
 def _scattered(k: int, runs: Sequence[tuple[Array, Array]], label: str) -> list[PlotLine]:
-    """Runs as points; the first carries the label, and a line joins their mean where they share their travels."""
+    """Runs (x, y) as points, the first one labelled, and a line through their mean at x of the run of fewest points."""
     look = PlotLine(tone=_TONES[k % 3], dashes="", marker=MARKERS[k % len(MARKERS)], size=2.8, filled=k % 2 == 0)
     points = [replace(look, x=x, y=y, label="" if place else label) for place, (x, y) in enumerate(runs)]
     shortest = min((x for x, _ in runs), key=len)
@@ -106,7 +106,7 @@ def _scattered(k: int, runs: Sequence[tuple[Array, Array]], label: str) -> list[
 
 @dataclass(frozen=True, slots=True)
 class TimeCurves:
-    """Curves over time (s): pressure rise (MPa) of a slow press, at the gauge, and its output (times, rises)."""
+    """Pressure rise (MPa) over time (s), (n,) each: slow press, at the gauge; ``samples``: times, rises, or None."""
 
     time: Array
     slow: Array
@@ -116,7 +116,7 @@ class TimeCurves:
 
 @dataclass(frozen=True, slots=True)
 class GainCurve:
-    """A gain over frequency (Hz)."""
+    """A gain over frequency (Hz), (n,) each."""
 
     label: str
     frequency: Array
@@ -124,7 +124,7 @@ class GainCurve:
 
 
 def response_chart(curves: TimeCurves, gains: Sequence[GainCurve]) -> str:
-    """The signal on the left, the gains on the right; SVG."""
+    """SVG: pressure rise over time on the left, gains over frequency on the right."""
     lines = [
         PlotLine(curves.time, curves.slow / KPA, "slow press", dashes=LINES[1], width=0.9),
         PlotLine(curves.time, curves.gauge / KPA, "at the gauge", tone=ACCENT, width=0.9),
@@ -137,7 +137,7 @@ def response_chart(curves: TimeCurves, gains: Sequence[GainCurve]) -> str:
 
 
 def gain_panel(gains: Sequence[GainCurve]) -> Panel:
-    """Gains over frequency, both logarithmic, with the band of 3 dB."""
+    """Panel of gains over frequency, both logarithmic, with the band within 3 dB shaded."""
     lines = [
         PlotLine(one.frequency, one.gain, one.label, tone=_TONES[k % 3], dashes=LINES[k % len(LINES)], width=1.0)
         for k, one in enumerate(gains)
@@ -148,7 +148,7 @@ def gain_panel(gains: Sequence[GainCurve]) -> Panel:
 
 
 def evidence_svg(curve: MeasuredCurve, thinned: Trace, simulated: bool) -> str:
-    """Position, force and pressure over time; contact, the stretch read, and doubtful parts marked in each."""
+    """SVG of position, force and pressure over time; first contacts, parts read and doubtful parts marked in each."""
     channels = (
         ("position  (mm)", thinned.position),
         ("force  (N)", thinned.force),

@@ -1,4 +1,4 @@
-"""Charts of a graded membrane on its datasheet: how its resins are laid out, and its effect beside constant mixes."""
+"""Charts of a graded membrane: its resins and modulus along the arc, and its response beside constant mixes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CELLS = 90
 
 
 def grade_section(sheet: SheetData) -> Plot | None:
-    """Half sections of the dome shaded by the stiff resin's fraction."""
+    """Half sections of the dome shaded by the stiff resin's fraction; None without a grade."""
     material = sheet.scene.membrane_material
     if material.along is None:
         return None
@@ -37,7 +37,7 @@ def grade_section(sheet: SheetData) -> Plot | None:
 
 
 def grade_share(sheet: SheetData) -> Plot | None:
-    """Share of the stiff resin along the arc."""
+    """Share of the stiff resin along the arc; None without a grade."""
     material = sheet.scene.membrane_material
     if material.along is None:
         return None
@@ -50,7 +50,7 @@ def grade_share(sheet: SheetData) -> Plot | None:
 
 
 def grade_modulus(sheet: SheetData) -> Plot | None:
-    """Modulus along the arc, and its mean."""
+    """Shear modulus along the arc, and its mean; None without a grade."""
     material = sheet.scene.membrane_material
     if material.along is None:
         return None
@@ -60,7 +60,7 @@ def grade_modulus(sheet: SheetData) -> Plot | None:
 
 
 def _along(along: ArcGrading, values: Array, label: str, mean: float | None = None) -> str:
-    """A value along the arc from the pole to the rim."""
+    """SVG of values (n,) along the arc from the pole to the rim, with a line at ``mean`` in MPa if it is given."""
     lines, notes = [PlotLine(along.arc, values, tone=ACCENT, width=1.8)], []
     if mean is not None:
         lines.append(PlotLine((0, 1), (mean, mean), width=0.8, dashes=LINES[1]))
@@ -99,7 +99,7 @@ def _section(ax: Axes, along: ArcGrading, shape: DomeShape, stiff: str) -> None:
 
 
 def graded_sensitivity(sheet: SheetData) -> Plot | None:
-    """Sensitivity over driving pressure, graded and constant."""
+    """Sensitivity over driving pressure, of the graded and of constant membranes; None without a grade."""
     if sheet.scene.membrane_material.along is None:
         return None
     lines = []
@@ -115,7 +115,7 @@ def graded_sensitivity(sheet: SheetData) -> Plot | None:
 
 
 def graded_response(sheet: SheetData) -> Plot | None:
-    """Pressure rise over force at the highest driving pressure, graded and constant."""
+    """Pressure rise over force at the highest driving pressure, of the same membranes; None without a grade."""
     if sheet.scene.membrane_material.along is None:
         return None
     panel = rises([predicted_press(one.states[-1], look) for one, look in _compared(sheet)])
@@ -125,7 +125,7 @@ def graded_response(sheet: SheetData) -> Plot | None:
 
 
 def _compared(sheet: SheetData) -> list[tuple[ComparedMembrane, PlotLine]]:
-    """Every membrane with its look, the graded one last and on top."""
+    """Every membrane with its line style, the graded one last and drawn on top."""
     looks = [PlotLine(end=one.label, width=0.9, dashes=LINES[1 + k % 4]) for k, one in enumerate(sheet.constants)]
     graded = ComparedMembrane("graded", sheet.prediction.states)
     picked = PlotLine(end=graded.label, tone=ACCENT, width=2.0, picked=True, over=4)

@@ -70,7 +70,7 @@ def mould_section_blocks(mould: MouldAssembly) -> list[SheetBlock]:
 
 
 def mould_rows(mould: MouldAssembly) -> list[list[str]]:
-    """Description of the mould and its silicone, as rows of name and text."""
+    """Rows (name, text) that describe the mould and its silicone."""
     size, shape, batch = mould.size, mould.size.shape, silicone_batch(mould)
     release = release_of(mould.membrane, size)
     parts = ", ".join(f"{count} x {name.removeprefix('mould-')}" for name, count in mould.counts.items())
@@ -107,7 +107,7 @@ def _fastening(mould: MouldAssembly) -> str:
 
 
 def _fill(ax: Axes, solid: Solid) -> None:
-    """The section of a part, turned over: the drawing's heights are -z."""
+    """Draw the section of a part turned over, at heights -z: silicone in gray, printed parts and ring hatched."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -122,14 +122,14 @@ def _fill(ax: Axes, solid: Solid) -> None:
 
 
 def _holes(ax: Axes, ring: RingSize) -> None:
-    """Holes of the ring, turned into the plane of the section and full of silicone."""
+    """Draw the holes of the ring, turned into the plane of the section and full of silicone."""
     z = -np.array([ring.web_low, ring.web_low, ring.web_high, ring.web_high])
     for x in (-ring.hole_circle, ring.hole_circle):
         ax.fill(x + ring.hole_radius * np.array([-1.0, 1.0, 1.0, -1.0]), z, facecolor=_SILICONE, edgecolor=INK, lw=THIN)
 
 
 def _labels(ax: Axes, size: MouldSize) -> None:
-    """Names of the parts and of the silicone's passages, from above down on either side."""
+    """Draw the names of the parts and of the silicone's passages, from the top down on both sides."""
     shape, wide = size.shape, 0.5 * size.pitch + size.margin
     low, high, foot = -size.cap_high, -size.base_low, -size.foot_low
     step, outer = (high - low) / 6, size.seat(size.foot_low)

@@ -1,4 +1,4 @@
-"""A sheet as a page, a PDF and Markdown: Jinja writes the page, the source that Typst sets, and the Markdown."""
+"""Sheets as HTML pages and PDFs, and texts in Markdown: Jinja fills the templates, Typst sets the PDF."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _UNDATED = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
 
 
 def set_sheet(sheet: Sheet, name: str) -> dict[str, bytes]:
-    """``NAME.html`` and ``NAME.pdf``; the same sheet gives the same bytes."""
+    """``NAME.html`` and ``NAME.pdf`` by file name; the same sheet gives the same bytes."""
     return {f"{name}.html": html(sheet).encode(), f"{name}.pdf": pdf(sheet)}
 
 
 def html(sheet: Sheet) -> str:
-    """A page that needs nothing from outside: fonts, figures and pictures stand in it."""
+    """The sheet as a page that loads nothing: its fonts, figures and pictures are part of it."""
     from markupsafe import Markup
 
     seen: set[str] = set()
@@ -50,7 +50,7 @@ def html(sheet: Sheet) -> str:
 
 
 def without_repeats(text: str, seen: set[str]) -> str:
-    """A figure without the definitions in ``seen``, mostly letters; its own are then added to ``seen``."""
+    """An SVG figure without definitions (mostly glyphs) that are in ``seen``; new ones are added to ``seen``."""
 
     def once(match: re.Match[str]) -> str:
         if match[0] in seen:
@@ -79,7 +79,7 @@ def source(sheet: Sheet) -> dict[str, bytes]:
         return name
 
     def literal(value: Any) -> Any:
-        """Text as a string of Typst: nothing that somebody wrote is read as its code."""
+        """A text as a string literal of Typst, so that no text from outside is read as Typst code."""
         if isinstance(value, Markup | int | float):
             return value
         text = "".join(letter if letter >= " " or letter == "\n" else " " for letter in str(value))
@@ -90,7 +90,7 @@ def source(sheet: Sheet) -> dict[str, bytes]:
 
 
 def pdf(sheet: Sheet) -> bytes:
-    """Set a PDF with Typst, a compiler in one wheel: no system packages, no system fonts."""
+    """The sheet as a PDF, set by Typst, a compiler in a Python wheel: it needs no system packages, no system fonts."""
     import typst
 
     date = sheet.date
@@ -125,7 +125,7 @@ def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, 
 
 
 def filled(template: str, **values: Any) -> str:
-    """A template with its values: filters write numbers, times and lists, and keep text from being read as Markdown."""
+    """A Markdown template filled with ``values``; filters format numbers, times and lists, and escape Markdown."""
     environment = _environment(autoescape=False)
     environment.filters |= {"f": format, "md": markdown_escaped, "listed": _listed, "time": _time, "value": _value}
     return environment.get_template(template).render(**values).rstrip() + "\n"

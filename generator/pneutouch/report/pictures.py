@@ -1,6 +1,6 @@
-"""A shaded picture of the sensor, cut open, drawn with a depth buffer: no display, no graphics driver.
+"""Shaded pictures of the sensor, cut open, and of the pressed dome, drawn with a depth buffer: no graphics driver.
 
-Used for the PDF and the README, where a page cannot turn.
+They stand in PDFs, image files and the README, which cannot be turned.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ if TYPE_CHECKING:
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _OVERSAMPLING = 2
 _PIXELS_AT_ONCE = 50_000
-"""Number of pixels of triangles that are processed together: as many as fit the processor's cache."""
+"""Number of pixels of triangles processed at a time: as many as fit the processor's cache."""
 _LEVEL_EDGE = 1e-6
-"""Height in pixels below which an edge lies along a line of pixels."""
+"""An edge of less height than this, in pixels, counts as horizontal."""
 
 
 def picture(bodies: Sequence[ShadedBody], width: int = 900, height: int = 640) -> bytes:
-    """PNG of the bodies (z up) from above and in front, on white."""
+    """PNG of the bodies (z up) from above and in front, on white; ``width`` and ``height`` in pixels."""
     return png(pixels(bodies, width, height))
 
 
 def png(image: Array, colours: int | None = None) -> bytes:
-    """PNG of an image (height, width, 3) from 0 to 1, the uppermost line first; with ``colours``, of so many."""
+    """PNG of an image (height, width, 3), 0 to 1, top line first, with at most ``colours`` colours if given."""
     from matplotlib.image import imsave
     from PIL import Image
 
@@ -55,7 +55,7 @@ def png(image: Array, colours: int | None = None) -> bytes:
 
 
 def pixels(bodies: Sequence[ShadedBody], width: int, height: int, tilt_deg: float = TILT_DEG) -> Array:
-    """The bodies (z up) from above, by ``tilt_deg``, and in front, on white: (height, width, 3), 0 to 1."""
+    """Image (height, width, 3), 0 to 1, of bodies (z up) on white, from in front, ``tilt_deg`` above the horizon."""
     view = _view(math.radians(-62), math.radians(tilt_deg))
     size = (height * _OVERSAMPLING, width * _OVERSAMPLING)
     image, depth = np.ones((*size, 3)), np.full(size, -np.inf)
@@ -70,14 +70,14 @@ def pixels(bodies: Sequence[ShadedBody], width: int, height: int, tilt_deg: floa
 
 
 def _view(turn: float, tilt: float) -> Array:
-    """Rotation whose rows are right, up and towards the viewer."""
+    """Rotation (3, 3) whose rows are right, up and towards the viewer; ``turn`` about z and ``tilt`` in radians."""
     towards = np.array([math.cos(tilt) * math.cos(turn), math.cos(tilt) * math.sin(turn), math.sin(tilt)])
     right = np.array([-math.sin(turn), math.cos(turn), 0.0])
     return np.array([right, np.cross(towards, right), towards])
 
 
 def _shades(body: ShadedBody) -> Array:
-    """Colours at the corners, (n, 3, 3): ambient, diffuse from the upper left, a little from below."""
+    """Colours at the corners, (n, 3, 3): ambient light, diffuse light from the upper left, a little from above."""
     diffuse = np.clip(body.normals @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
     shade = body.relief * (0.42 + 0.62 * diffuse + 0.05 * body.normals[..., 2]) + (1.0 - body.relief)
     lit: Array = np.clip(shade[..., None] * body.colours, 0, 1)
@@ -85,9 +85,9 @@ def _shades(body: ShadedBody) -> Array:
 
 
 def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
-    """Paint triangles (n, 3, 3), in pixels and depth, where they lie in front; of two equally near the first shows.
+    """Paint triangles (n, 3, 3), x and y in pixels and depth, that face the viewer, where they are nearest.
 
-    Their ``colours`` (n, 3, 3) at the corners are mixed between them.
+    The ``colours`` (n, 3, 3) of the corners are interpolated; of two equally near triangles the first shows.
     """
     a, b, c = np.moveaxis(corners, 1, 0)
     whole = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
@@ -108,14 +108,14 @@ def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
 
 
 def _counted(low: Index, high: Index) -> tuple[Index, Index]:
-    """Number of the pair, and whole number, for all whole numbers from low to high of each pair, (n,) each."""
+    """All whole numbers from low to high (n,) of each pair in a row: index of the pair, and the number."""
     count = np.maximum(high - low + 1, 0)
     which = np.repeat(np.arange(low.size), count)
     return which, np.arange(which.size) - np.repeat(np.cumsum(count) - count - low, count)
 
 
 def _span(corners: Array, whole: Array, y: Array, low: Index, high: Index) -> tuple[Index, Index]:
-    """First and last pixel of triangles (n, 3, 3) on lines at y, with one to spare, between low and high; (n,) each."""
+    """First and last pixel (n,) of triangles (n, 3, 3) on lines at y, a pixel or two wider, from low to high."""
     left, right = low.astype(float), high.astype(float)
     for k in range(3):
         (px, py), (qx, qy) = corners[:, k, :2].T, corners[:, k - 2, :2].T
@@ -128,7 +128,7 @@ def _span(corners: Array, whole: Array, y: Array, low: Index, high: Index) -> tu
 
 
 def _nearest(image: Array, depth: Array, x: Index, y: Index, corners: Array, whole: Array, colours: Array) -> None:
-    """Paint pixels (n,) of triangles (n, 3, 3) that lie in the triangle and in front of the picture so far."""
+    """Paint pixels ``x``, ``y`` (n,) that lie in their triangles (n, 3, 3) and in front of ``depth``; renew it."""
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.moveaxis(corners, 0, -1)
     right, up = x + 0.5, y + 0.5
     u = ((bx - right) * (cy - up) - (cx - right) * (by - up)) / whole
@@ -148,10 +148,10 @@ PRESSED_TILT_DEG = 38.0
 """Angle above the horizon from which the dome is seen: steeper than bodies, for the contact lies on top."""
 
 _PIXELS = (720, 512)
-"""Width and height of the picture."""
+"""Width and height of the picture of the pressed dome, pixels."""
 
 _COLOURS = 128
-"""Colours of the picture in a page, which has to be small."""
+"""Number of colours of that picture in a page, where it has to be small."""
 
 _RAMP = ("#D3E8F5", "#62A8CF", "#0B5C8A", "#04263C")
 """Colours from no to the greatest pressure: one hue, light to dark, so that gray paper keeps the order."""
@@ -167,7 +167,7 @@ _LINE = 0.004
 
 
 def pressed_files(view: PressedView, name: str) -> dict[str, bytes]:
-    """``NAME-pressed.glb``, and ``NAME-pressed.png`` with its scale."""
+    """Files by name: ``NAME-pressed.glb``, and ``NAME-pressed.png`` with the colour scale."""
     bodies = _bodies(view)
     return {f"{name}-pressed.glb": shaded_glb(bodies), f"{name}-pressed.png": _with_scale(view, _image(bodies))}
 
@@ -184,7 +184,7 @@ def pressed_blocks(view: PressedView) -> list[SheetBlock]:
 
 
 def pressed_caption(view: PressedView) -> str:
-    """Caption of the picture."""
+    """Caption of the picture of the pressed dome."""
     moved = f" and moved {view.travel:g} mm sideways" if view.travel else ""
     return (
         f"The outer surface at {view.driving_pressure_kPa:g} kPa driving pressure, pressed {view.indentation:.2f} mm"
@@ -194,7 +194,7 @@ def pressed_caption(view: PressedView) -> str:
 
 
 def _bodies(view: PressedView) -> list[ShadedBody]:
-    """Dome, base plane and lines."""
+    """Bodies of the picture: dome, base plane, and the lines of the object if there are any."""
     wide = float(np.ptp(view.points[..., 0]))
     tubes = [_tube(line, _LINE * wide) for line in view.lines]
     drawn = []
@@ -209,7 +209,7 @@ def _colour(text: str) -> Array:
 
 
 def _dome(view: PressedView) -> ShadedBody:
-    """The outer surface; two triangles to a field of the grid, one at the pole."""
+    """The outer surface, coloured by pressure: two triangles for each cell of the grid, one in the row at the pole."""
     share = view.pressure_kPa / max(float(view.pressure_kPa.max()), 1e-12)
     steps, ramp = np.linspace(0.0, 1.0, len(_RAMP)), np.stack([_colour(text) for text in _RAMP])
     pressed = np.stack([np.interp(share, steps, part) for part in ramp.T], axis=-1)
@@ -259,7 +259,7 @@ def _image(bodies: list[ShadedBody]) -> Array:
 
 
 def _scale(drawn: Figure, ax: Axes, view: PressedView) -> None:
-    """The scale of the pressure, with its unit, along axes."""
+    """Draw the colour scale of the pressure, with its unit, into axes."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -269,7 +269,7 @@ def _scale(drawn: Figure, ax: Axes, view: PressedView) -> None:
 
 
 def _with_scale(view: PressedView, image: Array) -> bytes:
-    """PNG of the picture over its scale."""
+    """PNG of an image (height, width, 3) above its colour scale."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     buffer = io.BytesIO()
@@ -288,7 +288,7 @@ GRADE_COLOURS = ("#F4EBD6", ACCENT)
 
 
 def shown(assembly: Assembly, pixels: int) -> tuple[ShadedBody, ...]:
-    """The bodies of an assembly for a view ``pixels`` wide: meshes within an eighth of a pixel."""
+    """The bodies of an assembly, cut open, for a view ``pixels`` wide: meshes within an eighth of a pixel."""
     extent = max(float(np.ptp(body.vertices, axis=0).max()) for body in assembly.bodies)
     tolerance = max(assembly.scene.mesh_tolerance, extent / pixels / 8)
     grading, shape = assembly.scene.membrane_material.along, assembly.layout.shape
@@ -305,7 +305,7 @@ def greatest_share(grading: ArcGrading) -> float:
 
 
 def grade_colours(grading: ArcGrading, shape: DomeShape, points: Array) -> Array:
-    """Colours (n, 3) of points (n, 3) of the wall of a shape, mm in the design frame."""
+    """Colours (n, 3), 0 to 1, of points (n, 3) of the wall, mm in the design frame, by the stiff resin's share."""
     light, dark = (np.array(list(bytes.fromhex(colour[1:]))) / 255 for colour in GRADE_COLOURS)
     arc = shape.arc_share(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     share = np.interp(arc, grading.arc, grading.stiff_fraction)[:, None] / greatest_share(grading)

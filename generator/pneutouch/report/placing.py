@@ -1,5 +1,5 @@
-"""Placing of the labels of a chart: right of the axes as near to their curves as their height allows, and inside at a
-place free of curves, markers and other labels."""
+"""Placement of the labels of a chart: right of the axes, as near to their curves as their heights allow, and inside
+them where neither curve, marker nor other label is."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ AT_SIDE, NEAR = "_at_side", "_near"
 """Marks of an annotation, given by its `set_label`, by which `settle` moves it."""
 
 _STEP = 1.2
-"""Distance of the points that a curve is tested at, in pixels of the figure (points)."""
+"""Distance of the points at which a curve is tested, in points (pixels at 72 dots per inch)."""
 _AWAY = (5.0, 8.0, 12.0, 17.0, 23.0, 30.0, 38.0, 47.0, 57.0, 68.0, 80.0, 93.0)
-"""Distances from its point that are tried for a label, points."""
+"""Distances of a label from its data point that are tried in turn, points."""
 _TURNS = 24
 _LEADER = 9.0
-"""Distance from which on a thin line leads from the label to its point."""
+"""Distance, points, from which on a thin line is drawn from the label to its data point."""
 _SPARE = 1.0
 """Free rim around a label, points."""
 
@@ -33,7 +33,7 @@ LabelBox = tuple[float, float, float, float]
 
 
 def settle(drawn: Figure) -> None:
-    """Move the labels that are marked, once the layout stands; to be called at 72 dots per inch."""
+    """Move the labels that are marked, after the layout is done; to be called at 72 dots per inch."""
     for ax in drawn.axes:
         _stack(ax, _marked(ax, AT_SIDE), 1.0, float(drawn.bbox.height) - 1.0)
     taken = [_box(text) for text in _fixed(drawn)]
@@ -50,7 +50,7 @@ def _marked(ax: Axes, mark: str) -> list[Annotation]:
 
 
 def _fixed(drawn: Figure) -> list[Any]:
-    """Every text in the axes that stays where it is; legends and the numbers of the axes stand outside."""
+    """Every text in the axes that `settle` has placed or leaves; legends and numbers of the axes stand outside."""
     texts = [text for ax in drawn.axes for text in ax.texts]
     return [text for text in texts if text.get_label() != NEAR and text.get_visible() and text.get_text().strip()]
 
@@ -78,7 +78,7 @@ def _stack(ax: Axes, labels: list[Annotation], low: float, high: float) -> None:
 
 
 def _column(targets: list[float], heights: list[float], low: float, high: float) -> list[float]:
-    """Middles of boxes, ascending, that do not overlap and deviate least from the target ones (pooled neighbours)."""
+    """Middles of boxes, ascending, without overlap, as near to ``targets`` as possible within ``low`` and ``high``."""
     groups: list[tuple[float, list[int]]] = []
     offset = np.concatenate([[0.0], np.cumsum([0.5 * (a + b) for a, b in pairwise(heights)])])
     for k, y in enumerate(targets):
@@ -120,7 +120,7 @@ _RIM = np.array([(0.0, 0.0), *((np.cos(turn), np.sin(turn)) for turn in np.arang
 
 
 def _dense(xy: Array) -> Array:
-    """Points of a line through (n, 2) that are at most a step apart."""
+    """Points along the line through ``xy`` (n, 2), at most `_STEP` apart."""
     if len(xy) < 2:
         return xy
     leap = np.diff(xy, axis=0)
@@ -133,9 +133,9 @@ def _dense(xy: Array) -> Array:
 
 
 def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:
-    """Move a label to the first free place around its point; if there is none, to the one with the least under it.
+    """Move a label to the first free place around its point, or else to the one with the least penalty (`_blocked`).
 
-    Returns its box, and points (n, 2) on the line that leads to it.
+    Returns its box, and points (n, 2) on the line that leads to it. Where it nowhere fits into the axes it stays.
     """
     left, low, right, high = _box(label)
     wide, tall = right - left, high - low
@@ -187,7 +187,7 @@ def _crossed(point: tuple[float, float], box: LabelBox, away: float, taken: list
 
 
 def _blocked(box: LabelBox, curves: Array, taken: list[LabelBox]) -> float:
-    """Penalty for a box by what lies under it: points of curves, and more for each label."""
+    """Penalty of a box: the number of curve points under it, and 1000 for each label that it overlaps."""
     left, low, right, high = box[0] - _SPARE, box[1] - _SPARE, box[2] + _SPARE, box[3] + _SPARE
     hit = (curves[:, 0] > left) & (curves[:, 0] < right) & (curves[:, 1] > low) & (curves[:, 1] < high)
     others = sum(left < b[2] and b[0] < right and low < b[3] and b[1] < high for b in taken)

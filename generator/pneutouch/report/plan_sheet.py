@@ -17,7 +17,7 @@ _WORDS = {
 
 
 def plan_sheet(plan: PlannedCampaign) -> str:
-    """Markdown of a plan."""
+    """Markdown of a test plan."""
     states = [state for resin in plan.resins for state in resin.states]
     points = [point for state in states for point in state.points]
     # The others have the same.
@@ -42,7 +42,7 @@ def plan_sheet(plan: PlannedCampaign) -> str:
 
 
 def _kinds(runs: list[PlannedRun]) -> list[tuple[str, list[float], int, float, float]]:
-    """Kinds of runs in their order: driving pressures, runs at each, time of one and of all of them, s."""
+    """Runs of one kind in a row: kind, driving pressures (kPa), runs at each, time of one and of all of them, s."""
     kinds = []
     for kind, group in groupby(runs, key=lambda run: run.kind):
         members = list(group)
@@ -60,13 +60,13 @@ def _dust(plan: PlannedCampaign) -> str:
 
 
 def _deepest(run: PlannedRun, plan: PlannedCampaign) -> ExpectedPoint | None:
-    """The deepest point that prediction and instruments allow."""
+    """The deepest point that is predicted and within the ranges of the instruments; None if there is none."""
     usable = [point for point in run.expected if point.force_N is not None and not _beyond(point, plan)]
     return usable[-1] if usable else None
 
 
 def _beyond(point: ExpectedPoint, plan: PlannedCampaign) -> bool:
-    """True where an instrument's range would be passed."""
+    """True if the expected force or pressure exceeds an instrument's range; False if they are not known."""
     if point.force_N is None or point.cavity_pressure_kPa is None:
         return False
     rig = plan.rig

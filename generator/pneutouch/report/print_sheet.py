@@ -17,7 +17,7 @@ from pneutouch.wording import counted
 
 
 def making(scene: ResolvedDesign, pour: SiliconeBatch | None = None) -> list[str]:
-    """Steps to make, clean and assemble a sensor, in order; ``pour`` if its membrane is cast."""
+    """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None."""
     grown = isinstance(scene.seat, OnePiece)
     lines = _printed(scene, grown) if pour is None else casting_steps(scene, pour)
     if isinstance(scene.seat, CastRing):
@@ -33,12 +33,12 @@ def making(scene: ResolvedDesign, pour: SiliconeBatch | None = None) -> list[str
 
 
 def making_title(pour: SiliconeBatch | None) -> str:
-    """Heading of the steps on the sheet."""
+    """Heading of the steps on the datasheet; ``pour`` as in `making`."""
     return "Material and print" if pour is None else "How to make it"
 
 
 def body_rows(sheet: SheetData) -> list[list[str]]:
-    """Material and print of each body."""
+    """Rows of the sensor's bodies: name, material, volume and mass, machine and mode, support."""
     rows = []
     for solid in sheet.assembly.solids:
         printer, mode = sheet.assembly.machine(solid.name)
@@ -48,7 +48,7 @@ def body_rows(sheet: SheetData) -> list[list[str]]:
 
 
 def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:
-    """Steps to print and clean a membrane."""
+    """Steps to print and clean a membrane; ``grown``: in one piece with the connector."""
     lines = [_print_membrane(scene, grown)]
     if scene.membrane_material.is_digital:
         pair = " + ".join(scene.membrane_material.base_resins)
@@ -202,7 +202,7 @@ def _fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
 
 
 def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator, who chooses resins at the machine; ``left_out``: files not written, and why."""
+    """Markdown for the operator, who chooses resins at the machine; ``left_out``: reason by file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = assembly.glue_volume / ML
     return filled(

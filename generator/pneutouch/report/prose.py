@@ -1,4 +1,4 @@
-"""The sentences of a datasheet that do not depend on a calculation."""
+"""The sentences of a datasheet: fixed ones, and those filled in from the design."""
 
 from math import isfinite
 
@@ -57,7 +57,7 @@ DEFINITIONS = (
 
 
 def front_error(errors: tuple[float, float]) -> str:
-    """Median and greatest relative differences of fronts from the solid, in words."""
+    """Median and greatest relative difference between trade-off fronts and the solid, in words."""
     if not all(map(isfinite, errors)):
         return "not checked by it"
     median, greatest = errors
@@ -90,7 +90,7 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
 
 
 def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
-    """A rigid object with its friction, a coefficient after its name."""
+    """Words for a rigid object: friction before its name, or after it for a coefficient, which leaves out the place."""
     place = f", {contact.place}" if contact.off_axis else ""
     if 0.0 < contact.friction < float("inf"):
         return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}"
@@ -98,14 +98,14 @@ def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
 
 
 def presser(scene: ResolvedDesign) -> str:
-    """Object that presses the sensor, in words."""
+    """Words for the object that presses the sensor, such as ``rigid ball of 5 mm radius``."""
     contact = scene.design.contact
     size = f" of {scene.design.indentation.plate_diameter_mm:g} mm" if contact.is_plate else ""
     return f"rigid {contact.label}{size}"
 
 
 def limits_of_use(scene: ResolvedDesign) -> str:
-    """Note on the use of the sensor and of its figures, and its limits."""
+    """Sentences on the limits of use, and on the contact for which the figures hold."""
     contact = scene.design.contact
     body = "flat rigid body" if contact.is_plate else presser(scene)
     hold = f" ({contact.hold})" if contact.friction else ""
@@ -127,7 +127,7 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
 
 
 def status(scene: ResolvedDesign) -> str:
-    """Status of the figures: from only the design, or from the runs of one specimen, measured or simulated."""
+    """Sentence on the origin of the figures: the design alone, or measured or simulated runs of one specimen."""
     calibration = scene.calibration
     if calibration is None:
         return "Predicted. No unit has been built or tested."

@@ -29,7 +29,7 @@ _TONES = (ACCENT, INK, MUTED)
 
 
 def viscous_section(sheet: SheetData) -> list[SheetBlock]:
-    """Charts, table and notes, or why there are none; and the line on ageing."""
+    """Section with charts, table and notes, or the reason why there are none; and a line on ageing."""
     viscous, ageing = sheet.viscous, Text(ageing_line(sheet))
     title = "Relaxation and hysteresis"
     if viscous.depth_mm is None:
@@ -58,7 +58,7 @@ def _plots(viscous: Viscous, sheet: SheetData) -> list[Plot]:
 
 
 def held_panel(sheet: SheetData) -> Panel:
-    """Force and pressure rise over time at the highest driving pressure."""
+    """Panel of force and rise over time, in percent of their value at 1 s, at the highest driving pressure."""
     lines = [
         PlotLine(run.times, values, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
         for j, run in enumerate(sheet.viscous_runs.held[-1] if sheet.viscous_runs else ())
@@ -70,7 +70,7 @@ def held_panel(sheet: SheetData) -> Panel:
 
 
 def loop_panel(sheet: SheetData) -> Panel:
-    """Pressure rise over force in the quicker loop at the highest driving pressure."""
+    """Panel of pressure rise over force in the quickest loop at the highest driving pressure."""
     lines = [
         PlotLine(force, rise / KPA, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
         for j, loop in enumerate(list(sheet.viscous_runs.loops.values())[-1][-1] if sheet.viscous_runs else ())
@@ -81,7 +81,7 @@ def loop_panel(sheet: SheetData) -> Panel:
 
 
 def _or_words(panel: Panel) -> Panel:
-    """The panel, with words in it where no run could be followed."""
+    """The panel; without a line, because no run could be followed, its title says so."""
     from dataclasses import replace
 
     return panel if panel.lines else replace(panel, title="not followed: see the notes")
@@ -124,7 +124,7 @@ def _notes(viscous: Viscous, rows: Sequence[tuple[float, int, BySource]]) -> lis
 
 
 def ageing_line(sheet: SheetData) -> str:
-    """Effect of a year on the modulus and by it on the sensitivity, and the measured change."""
+    """Sentence on a year of ageing: change of modulus and sensitivity, predicted and measured, or why unknown."""
     material, ageing = sheet.scene.membrane_material, sheet.ageing
     if not isinstance(ageing, AgeingData):
         return f"Ageing: {ageing}."

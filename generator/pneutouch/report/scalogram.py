@@ -23,7 +23,7 @@ SIZE = (180.0, 96.0)
 """Width and height in mm: the text width of A4."""
 
 _COLUMNS = 500
-"""Greatest number of moments drawn: 6 per mm, which bounds the file's size."""
+"""Greatest number of times drawn for each state, which bounds the file's size."""
 
 _DPI = 250
 
@@ -40,10 +40,10 @@ class ScannedState:
 def scalogram_chart(
     states: Sequence[ScannedState], expected: Mapping[str, float], size: tuple[float, float] = SIZE
 ) -> str:
-    """States side by side as SVG, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in
+    """SVG of states side by side, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in
     mm.
 
-    What the record's ends reach (the cone of influence) is hatched. The scalograms are one PNG each inside.
+    The part that the ends of the record affect (cone of influence) is hatched. Each scalogram is one PNG in the SVG.
     """
     top = max(_loudest(state.scalogram) for state in states)
     with figure(*size) as drawn:
@@ -73,7 +73,7 @@ def _loudest(scalogram: Scalogram) -> float:
 
 
 def _draw_signal(ax: Axes, state: ScannedState) -> None:
-    """The signal, or where it has more samples than columns its least and greatest value in each."""
+    """Draw the signal; if it has many samples, the least and the greatest value in each of `_COLUMNS` parts."""
     time, pressure = _outline(state.signal)
     ax.plot(time, pressure / KPA, color=INK, lw=0.6)
     ax.set_title(state.label, fontsize=7.5, **BOLD)
@@ -109,7 +109,7 @@ def _draw_scalogram(ax: Axes, scalogram: Scalogram, top: float) -> QuadMesh:
 
 
 def _colours() -> Colormap:
-    """White to ink, evenly darker, so that it reads in grayscale as in colour."""
+    """Colour map from white to ink, evenly darker, so that it reads in grayscale as in colour."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("pneutouch", ["#FFFFFF", "#A9CBE0", ACCENT, INK])

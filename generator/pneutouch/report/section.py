@@ -1,4 +1,4 @@
-"""The section through the x axis, of the solids as designed, with the pieces and notes of a technical drawing."""
+"""The section in the plane y = 0 of the solids as designed, elements of technical drawings, and texts on the port."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ _SIZE = 6.8
 
 
 def polar(radius: float, degrees: float) -> tuple[float, float]:
-    """A point at a radius and an angle in degrees."""
+    """The point (x, y) at a radius and an angle in degrees."""
     return radius * math.cos(math.radians(degrees)), radius * math.sin(math.radians(degrees))
 
 
 def circle(ax: Axes, x: float, y: float, radius: float, **look: object) -> None:
-    """A thin circle."""
+    """Draw a thin circle."""
     angle = np.linspace(0, 2 * np.pi, 181)
     style: dict[str, Any] = {"color": INK, "lw": 0.7, **look}
     ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **style)
@@ -64,7 +64,7 @@ def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> No
 
 
 def horizontal(ax: Axes, y: float, x0: float, x1: float, feature: float, text: str) -> None:
-    """A horizontal dimension at height ``y`` with extension lines from ``feature``."""
+    """Draw a horizontal dimension at height ``y``, with extension lines from the height ``feature``."""
     for x in (x0, x1):
         ax.plot([x, x], [feature, y - 0.6], color=INK, lw=0.25)
     _arrow(ax, (x0, y), (x1, y))
@@ -80,7 +80,7 @@ def horizontal(ax: Axes, y: float, x0: float, x1: float, feature: float, text: s
 
 
 def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str) -> None:
-    """A vertical dimension at ``x`` with extension lines from ``feature``; the text stands outside."""
+    """Draw a vertical dimension at ``x``, text outside, with extension lines from ``feature``, also an x."""
     reach = x + math.copysign(0.6, x)
     for y in (y0, y1):
         ax.plot([feature, reach], [y, y], color=INK, lw=0.25)
@@ -91,7 +91,7 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
 
 
 def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
-    """A note with an arrow to the point ``at``."""
+    """Draw a note at ``to``, aligned by ``ha``, with an arrow to the point ``at``."""
     arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
     box = {"fc": "white", "ec": "none", "pad": 0.6}
     look: dict[str, Any] = {"va": "center", "fontsize": _SIZE, "multialignment": "left", "bbox": box}
@@ -101,15 +101,15 @@ def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str
 _THICK = 0.9
 _TOLERANCE = 5e-3
 _WEDGES = 60
-"""Wedges of one colour on each side of a graded wall."""
+"""Number of wedges of one colour on each side of a graded wall."""
 _BEYOND = 0.1
 """Share of the wall by which wedges reach beyond both faces."""
 _HATCHES = {"membrane": "////////", "connector": "\\\\\\\\", "ring": "----", "plug": "||||"}
 
 
 def draw_section(ax: Axes, assembly: Assembly) -> None:
-    """Hatched sections of all bodies in the plane y = 0, the holes of patterns turned into it; a graded membrane in the
-    colours of its grade in place of the hatch."""
+    """Draw the hatched sections of all bodies in the plane y = 0, with their bores turned into it; a graded membrane in
+    the colours of its grade in place of the hatch."""
     from matplotlib.patches import PathPatch
 
     grading = assembly.scene.membrane_material.along
@@ -140,14 +140,14 @@ def draw_loops(ax: Axes, loops: Sequence[Array], role: str) -> None:
 
 
 def _shape(loops: Sequence[Array]) -> Path:
-    """One path of closed loops."""
+    """One path made of closed loops, (n, 2) each."""
     from matplotlib.path import Path
 
     return Path.make_compound_path(*(Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops))
 
 
 def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, shape: DomeShape) -> None:
-    """Wedges from face to face in the colours of the grade, cut to the wall; below the base in the rim's colour."""
+    """Draw wedges from face to face in the colours of the grade, cut to ``wall``; below the base as at the rim."""
     from matplotlib.collections import PolyCollection
 
     arc = np.linspace(0.0, 1.0, _WEDGES + 1)
@@ -176,8 +176,8 @@ def section_picture(assembly: Assembly) -> str:
 
 
 def draw_bores(ax: Axes, solid: Solid, but: float | None = None, hidden: bool = False) -> None:
-    """The bores of a solid as seen from above; dashed where they are ``hidden`` or closed above, those on the circle
-    ``but`` left out."""
+    """Draw the bores of a solid from above, dashed if ``hidden`` or closed above; those at the distance ``but`` (mm)
+    from the axis are left out."""
     for bore in solid.bores:
         if but is not None and math.isclose(math.hypot(bore.x, bore.y), but):
             continue
@@ -186,8 +186,8 @@ def draw_bores(ax: Axes, solid: Solid, but: float | None = None, hidden: bool = 
 
 
 def _turned_in(ax: Axes, bore: Bore, both_sides: bool, filled: bool = False) -> None:
-    """Drawing practice turns the holes of a pattern into the section plane; away from a side port. ``filled``: with the
-    membrane's silicone."""
+    """Draw a bore turned into the section, as drawings do; if not ``both_sides`` on the left, away from a side port.
+    ``filled``: hatched as the membrane's silicone."""
     side = (bore.x if abs(bore.x) > 1e-9 else bore.y) if both_sides else -1.0
     x = math.copysign(math.hypot(bore.x, bore.y), side)
     across = [x - bore.radius, x + bore.radius, x + bore.radius, x - bore.radius]
@@ -198,7 +198,7 @@ def _turned_in(ax: Axes, bore: Bore, both_sides: bool, filled: bool = False) -> 
 
 
 def port_note(scene: ResolvedDesign) -> str:
-    """The note at the port in the drawing, diameters as drawn."""
+    """Text of the note at the port in the drawing, with diameters as drawn."""
     port, wider = scene.port, scene.hole_undersize
     if isinstance(port, Barb):
         return f"stem Ø{port.stem_diameter:g}\nbore Ø{port.bore_diameter:g}\nbarb Ø{port.barb_diameter:g}"
@@ -210,7 +210,7 @@ def port_note(scene: ResolvedDesign) -> str:
 
 
 def port_steps(scene: ResolvedDesign) -> str:
-    """Steps to clean and connect the port."""
+    """Sentences on how to clean and connect the port."""
     port, tube = scene.port, scene.tube
     size = f"{tube.outer_diameter:g} x {tube.inner_diameter:g} mm"
     if isinstance(port, Barb):

@@ -1,4 +1,4 @@
-"""The charts of a datasheet: a function each, which draws it with its caption, or gives None where it has no data."""
+"""The charts of a datasheet: a function each, which returns its plot with a caption, or None without data."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from pneutouch.units import KPA, ML
 
 
 def sensitivity(sheet: SheetData) -> Plot:
-    """Sensitivity over driving pressure in every resin, this design picked out."""
+    """Sensitivity over driving pressure in every resin, this design emphasized."""
     chosen = sheet.scene.membrane_material.title
     panel = curves.resin_sensitivities(sheet.resin_curves, sheet.prediction, chosen, sheet.published_kPa_per_N)
     words = "Sensitivity over driving pressure for each resin in this geometry, this design picked out; "
@@ -33,7 +33,7 @@ def drawn_by(curves: dict[str, SensitivityCurve]) -> str:
 
 
 def inflation(sheet: SheetData) -> Plot:
-    """Driving pressure over apex height."""
+    """Driving pressure over inner apex height."""
     words = "Inflation: driving pressure over apex height; dashed beyond the limit point."
     return Plot(drawn_svg(curves.inflation(sheet.prediction)), words)
 
@@ -60,7 +60,7 @@ def _presses(sheet: SheetData) -> list[curves.Press]:
 
 
 def tuning(sheet: SheetData) -> Plot | None:
-    """Sensitivity of this design over the driving pressure, with its interval."""
+    """Sensitivity of this design over the driving pressure, with its interval; None outside the atlas."""
     if sheet.tuning is None:
         return None
     # The solid's ratio makes the atlas's plate without friction any other contact.
@@ -73,7 +73,7 @@ def tuning(sheet: SheetData) -> Plot | None:
 
 
 def tradeoff(sheet: SheetData) -> Plot | None:
-    """Greatest force range that goes with each sensitivity, resin by resin."""
+    """Greatest force range at each sensitivity, a line for each resin; None outside the atlas."""
     chart, note = sheet.tradeoff, sheet.assembly.dead_volume_note
     if chart is None:
         return None

@@ -25,7 +25,7 @@ _PERFORMANCE = (
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
-    """Tiles with the key figures of the first page."""
+    """The six tiles with the key figures on the first page."""
     first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
@@ -45,7 +45,7 @@ def key_figures(sheet: SheetData) -> list[Tile]:
 
 
 def warnings(sheet: SheetData) -> list[str]:
-    """Driving pressures of the design that the rating does not allow, and where a pressed dome leaves its axis."""
+    """Sentences on driving pressures above the rating, and on depths at which the pressed dome leaves its axis."""
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
     left = [(state.driving_pressure / KPA, event) for state in sheet.prediction.states for event in state.off_axis]
@@ -53,14 +53,14 @@ def warnings(sheet: SheetData) -> list[str]:
 
 
 def _condition(sheet: SheetData, k: int, key: str = SENSITIVITY_KEY) -> str:
-    """Condition of a state, and the interval of one of its figures."""
+    """Driving pressure of state ``k`` and the interval of its figure ``key``, in words."""
     width = interval(sheet.uncertainty[k], key)
     text = f"{width} (k = 2)" if width else "interval not known, see Uncertainty"
     return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {text}"
 
 
 def as_drawn(sheet: SheetData) -> list[SheetBlock]:
-    """The figures with the gas of connector and tube as drawn, where the design states none."""
+    """Figures with the gas of connector and tube as drawn, if the design states a dead volume of zero; else none."""
     if not sheet.as_drawn:
         return []
     rows = [
@@ -91,7 +91,7 @@ def ratings(sheet: SheetData) -> list[list[str]]:
 
 
 def connections(sheet: SheetData) -> list[list[str]]:
-    """Things to connect: port, tube, gauge, mount, and the pressures before contact."""
+    """Rows (name, text) on port, tube, gauge, mount, and the driving pressures."""
     scene = sheet.scene
     pneumatics, tube = scene.design.pneumatics, scene.tube
     pressures = ", ".join(f"{p:g}" for p in pneumatics.driving_pressures_kPa)
@@ -105,12 +105,12 @@ def connections(sheet: SheetData) -> list[list[str]]:
 
 
 def rating_note(sheet: SheetData) -> str:
-    """Advice that would raise the rated pressure."""
+    """Sentence on what would raise the rated pressure."""
     return f"To raise the rated pressure of {sheet.rating.pressure_kPa:.1f} kPa: {sheet.rating.remedy}."
 
 
 def operating(sheet: SheetData) -> list[list[str]]:
-    """Operating conditions that the figures hold for."""
+    """Rows (quantity, value, unit, note) on the operating conditions that the figures hold for."""
     design = sheet.scene.design
     pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
     note = sheet.assembly.dead_volume_note
@@ -154,7 +154,7 @@ def _published(sheet: SheetData, pressure_kPa: float) -> str:
 
 
 def limits(sheet: SheetData) -> SheetTable:
-    """The limits of the driving pressure and which of them the rating follows from."""
+    """Table of the limits of the driving pressure; the one that the rated pressure follows from is in bold."""
     limits, point, fitted = sheet.prediction.limits, sheet.prediction.limit_point, sheet.prediction.limits.law_range
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
     where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")

@@ -36,7 +36,7 @@ _SVG_DPI = 72.0
 
 @contextmanager
 def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
-    """A figure of a size in mm in the style of the project; nothing global changes."""
+    """An empty figure of a size in mm in the style of the project; matplotlib's settings are restored afterwards."""
     import matplotlib
     from matplotlib import font_manager
     from matplotlib.figure import Figure as MplFigure
@@ -50,7 +50,7 @@ def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
 
 
 def svg(drawn: Figure) -> str:
-    """The figure as SVG without date on white ground, its labels in free places, ready to stand inside HTML."""
+    """The figure as SVG, on white and without date, its labels in free places, ready to stand inside HTML."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     buffer, dpi, layout = io.StringIO(), drawn.dpi, drawn.get_layout_engine()
@@ -80,7 +80,7 @@ def _hundredths(number: re.Match[str]) -> str:
 
 
 def _named_by_content(text: str) -> str:
-    """Clip paths named by their content as printed: their own names follow digits that no drawing repeats."""
+    """The SVG with clip paths named by their content; matplotlib's own names change from run to run."""
     names = {
         old: "p" + hashlib.sha256(" ".join(content.split()).encode()).hexdigest()[:10]
         for old, content in re.findall(r'<clipPath id="(p[0-9a-f]+)">(.*?)</clipPath>', text, re.DOTALL)
@@ -89,7 +89,7 @@ def _named_by_content(text: str) -> str:
 
 
 Label = tuple[float, float, str, dict[str, Any]]
-"""x, y (data), text and look of a label."""
+"""x, y (data), text and text properties of a label."""
 
 
 def label_ends(ax: Axes, ends: list[Label]) -> None:
@@ -103,8 +103,8 @@ def label_ends(ax: Axes, ends: list[Label]) -> None:
 
 
 def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float] = (0.0, 1.0), **look: Any) -> None:
-    """A small text near a point of the data, on the side (right, up) of it where `svg` finds a free place; where that
-    is away from the point, a thin line leads to it."""
+    """A small text near a data point, on its ``side`` (right, up) or where else `svg` finds a free place; away from the
+    point a thin line leads to it."""
     arrow = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 1, "shrinkB": 2}
     style: dict[str, Any] = {"fontsize": 6.5, "zorder": 6, "annotation_clip": False, **look}
     place: dict[str, Any] = {"xytext": (8 * side[0], 8 * side[1]), "textcoords": "offset points"}
@@ -115,9 +115,9 @@ def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float]
 
 
 def legend_above(*axes: Axes, columns: int = 4, title: str = "") -> None:
-    """The legend of axes of one figure above them, where no curve runs, in rows of ``columns`` entries.
+    """One legend above the axes of a figure, in rows of ``columns`` entries.
 
-    Labels that several axes have stand once; what has one label in the same axes, a band and its line, is one entry.
+    A label that several axes share stands once; lines and bands with one label in the same axes are one entry.
     """
     entries: dict[str, Any] = {}
     for ax in axes:
@@ -160,11 +160,11 @@ def plain_ticks(axis: Axis) -> None:
 
 HATCHES = ("//", "\\\\", "||", "..", "--", "++")
 _FILL, _HATCH = 0.07, 0.55
-"""Opacity of the ground and of the hatch: the curves and the other bands are seen through both."""
+"""Opacity of a band's ground and of its hatch: curves and other bands are seen through both."""
 
 
 def band(ax: Axes, x: Array, low: Array, high: Array, number: int, tone: str, label: str | None = None) -> None:
-    """Draw the band of curve ``number`` between ``low`` and ``high`` (n,), with its ends in the line of the curve."""
+    """Draw the band of curve ``number`` between ``low`` and ``high`` (n,), with edges in the curve's line style."""
     from matplotlib.colors import to_rgba
 
     fill, lines = to_rgba(tone, _FILL), to_rgba(tone, _HATCH)

@@ -29,7 +29,7 @@ _OUTSIDE, _MOST_TEXTS = "#EFEFEF", 120
 
 @dataclass(frozen=True)
 class SweptAxis:
-    """A parameter: its key, its words, its unit, and its values: numbers, or names."""
+    """A swept parameter: key, name in words, unit, and values, which are numbers or names."""
 
     key: str
     words: str
@@ -38,23 +38,23 @@ class SweptAxis:
 
     @property
     def numeric(self) -> bool:
-        """True if the values are numbers that have a place on an axis; infinity, a surface that grips, has none."""
+        """True if all values are finite numbers; infinite friction (a surface that grips) has no place on an axis."""
         return all(isinstance(value, int | float) and math.isfinite(value) for value in self.values)
 
     @property
     def label(self) -> str:
-        """Words and unit for an axis."""
+        """Title of an axis: the words, and the unit if there is one."""
         return f"{self.words}  ({self.unit})" if self.unit not in ("", "1") else self.words
 
     def text(self, place: int) -> str:
-        """A value with its unit."""
+        """Value number ``place`` with its unit."""
         value = self.values[place]
         if isinstance(value, str):
             return value
         return f"{value:g}" if self.unit in ("", "1") else f"{value:g} {self.unit}"
 
     def named(self, place: int) -> str:
-        """A value with its words; a name of a catalogue without words."""
+        """Value number ``place`` after the parameter's words; a name from a catalogue stands alone."""
         value = self.values[place]
         alone = isinstance(value, str) and value not in ("true", "false")
         return self.text(place) if alone else f"{self.words} {self.text(place)}"
@@ -71,7 +71,7 @@ class SweptFigure:
     high: Array
 
     def at(self, order: Sequence[int]) -> SweptFigure:
-        """The figure with its axes in another order."""
+        """The figure with its axes in the order of the numbers ``order``."""
         axes = tuple(self.axes[k] for k in order)
         return SweptFigure(self.label, axes, *(np.transpose(a, order) for a in self.arrays))
 
@@ -82,10 +82,10 @@ class SweptFigure:
 
 
 def pictures(swept: SweptFigure) -> dict[str, tuple[str, bytes]]:
-    """SVG and PNG by name: ``over-KEY`` for each axis that varies, ``map`` where two numbers do.
+    """SVG and PNG by name: ``over-KEY`` for each axis that varies, and ``map`` over the first two of numbers.
 
-    Other axes become lines (names first), then panels; further axes stay at their middle values, which the title
-    states."""
+    A map is not drawn over driving pressures. Other axes become lines (names first), then panels, then the title only.
+    """
     varied = [k for k, axis in enumerate(swept.axes) if len(axis.values) > 1]
     drawn = {f"over-{swept.axes[k].key}": _over(_ordered(swept, [k])) for k in varied}
     numbers = [k for k in varied if swept.axes[k].numeric and swept.axes[k].key != "driving_pressure_kPa"]
@@ -95,7 +95,7 @@ def pictures(swept: SweptFigure) -> dict[str, tuple[str, bytes]]:
 
 
 def _ordered(swept: SweptFigure, first: list[int]) -> SweptFigure:
-    """The chosen axes first; then names before numbers, and what does not vary last. At least three axes."""
+    """The figure with the axes ``first``, then axes of names, of numbers, and constant ones; at least three in all."""
     others = [k for k in range(len(swept.axes)) if k not in first]
     others.sort(key=lambda k: (len(swept.axes[k].values) == 1, swept.axes[k].numeric))
     swept, none = swept.at([*first, *others]), SweptAxis("", "", "", ("",))
@@ -105,12 +105,12 @@ def _ordered(swept: SweptFigure, first: list[int]) -> SweptFigure:
 
 
 def spread_places(count: int, most: int = _PANELS) -> list[int]:
-    """At most ``most`` of ``count`` places, spread evenly over all."""
+    """At most ``most`` of the numbers 0 to ``count`` - 1, spread evenly over all."""
     return list(range(count)) if count <= most else sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
 
 def _panels(swept: SweptFigure) -> list[tuple[str, SweptFigure]]:
-    """Title and figure over the first two axes for values of the third; axes after it stay at their middle value."""
+    """Title, and figure over the first two axes, for values of the third; axes after it are at their middle values."""
     middle = tuple(len(axis.values) // 2 for axis in swept.axes[3:])
     fixed = [axis.named(k) for axis, k in zip(swept.axes[3:], middle, strict=True) if axis.key]
     panels = []
@@ -128,7 +128,7 @@ def _size(count: int) -> tuple[float, float]:
 
 
 def _over(swept: SweptFigure) -> tuple[str, bytes]:
-    """Lines, or points over names, for values of the second axis that have a figure anywhere."""
+    """SVG and PNG of lines, or points over names, for values of the second axis that have a figure somewhere."""
     kept = [k for k in range(len(swept.axes[1].values)) if np.isfinite(swept.value[:, k]).any()]
     kept = [kept[k] for k in spread_places(len(kept), _LINES)]
     lines = replace(swept.axes[1], values=tuple(swept.axes[1].values[k] for k in kept))
@@ -143,7 +143,7 @@ def _over(swept: SweptFigure) -> tuple[str, bytes]:
 
 
 def _lines(swept: SweptFigure) -> Panel:
-    """A line, or points over names, for each value of the second axis, with its band."""
+    """Panel with a line, or points over names, for each value of the second axis, with its band."""
     axis, lines = swept.axes
     drawn: list[PlotLine] = []
     for n in range(len(lines.values)):
@@ -162,7 +162,7 @@ def _lines(swept: SweptFigure) -> Panel:
 
 
 def _mapped(swept: SweptFigure) -> tuple[str, bytes]:
-    """Maps over the first two axes, all in the same colours."""
+    """SVG and PNG of maps over the first two axes, all with the same colour scale."""
     panels = _panels(swept)
     values = np.concatenate([one.value[np.isfinite(one.value)] for _, one in panels])
     span = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
@@ -176,7 +176,7 @@ def _mapped(swept: SweptFigure) -> tuple[str, bytes]:
 
 
 def _grid(drawn: Figure, count: int) -> list[Axes]:
-    """Axes in rows of two at most."""
+    """A list of ``count`` axes in rows of at most two."""
     grid = list(drawn.subplots(math.ceil(count / 2), min(count, 2), squeeze=False).flat)
     for ax in grid[count:]:
         ax.remove()
@@ -184,7 +184,7 @@ def _grid(drawn: Figure, count: int) -> list[Axes]:
 
 
 def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
-    """Cells in shades of one tone with their values if they are few; impossible points are crossed out."""
+    """Draw coloured cells with their values if they are few; missing ones are gray. Returns them for the colour bar."""
     first, second = swept.axes
     x, y = (np.array(axis.values, float) for axis in (first, second))
     order_x, order_y = np.argsort(x), np.argsort(y)
@@ -206,7 +206,7 @@ def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
 
 @dataclass(frozen=True)
 class MapPanel:
-    """A figure over both axes of a map, (n, m), NaN where it is missing, and the words of the reason there, else ""."""
+    """A figure over both axes of a map, (n, m), NaN where it is missing, and reasons (n, m), "" where it is known."""
 
     title: str
     value: Array
@@ -214,7 +214,7 @@ class MapPanel:
 
     @property
     def heading(self) -> str:
-        """Title, with the least and the greatest value."""
+        """Title with the least and the greatest value, or "not predicted"."""
         known = self.value[np.isfinite(self.value)]
         ends = f"{known.min():.3g} to {known.max():.3g}" if known.size else "not predicted"
         return f"{self.title}: {ends}" if self.title else ends
@@ -222,7 +222,7 @@ class MapPanel:
 
 @dataclass(frozen=True)
 class SweptMap:
-    """A contour map: its caption, its axes, values ascending, and a panel for each driving pressure."""
+    """A contour map: its caption, its two axes with ascending values, and a panel for each driving pressure."""
 
     caption: str
     axes: tuple[SweptAxis, SweptAxis]
@@ -230,13 +230,13 @@ class SweptMap:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Missing states for each reason, most first."""
+        """Number of missing states by reason, greatest first."""
         counted = Counter(word for panel in self.panels for row in panel.reasons for word in row if word)
         return dict(sorted(counted.items(), key=lambda entry: (-entry[1], entry[0])))
 
 
 def contour_map(swept: SweptMap) -> tuple[str, bytes]:
-    """The map as SVG and PNG, the same contour lines in all panels."""
+    """The map as SVG and PNG, with the same contour levels in all panels."""
     counts, known = swept.counts, np.concatenate([p.value[np.isfinite(p.value)] for p in swept.panels])
     levels = contour_levels(known)
     ground = {"facecolor": "white", "edgecolor": MUTED, "linewidth": 0.0}
@@ -257,8 +257,8 @@ def contour_map(swept: SweptMap) -> tuple[str, bytes]:
 
 
 def contour_levels(known: Array) -> Array:
-    """Round values that enclose all known ones (n,), at most ten steps, or in ratios where they differ much; two around
-    a constant."""
+    """Round levels around the values ``known`` (n,), at most ten steps; in ratios where the greatest value is over 7
+    times the least; two around a constant."""
     from matplotlib.ticker import MaxNLocator
 
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
@@ -274,7 +274,7 @@ def contour_levels(known: Array) -> Array:
 def _contours(
     ax: Axes, axes: tuple[SweptAxis, SweptAxis], panel: MapPanel, levels: Array, looks: dict[str, dict[str, Any]]
 ) -> Any:
-    """Shades and lines over the known points, above hatched cells around the missing ones; returns the lines."""
+    """Draw shades and lines over the known points, above hatched cells at the missing ones; returns the lines."""
     from matplotlib.colors import LinearSegmentedColormap
 
     x, y = (np.array(axis.values, float) for axis in axes)
@@ -291,7 +291,7 @@ def _contours(
 
 
 def _label_lines(ax: Axes, contours: Any) -> None:
-    """Values on the lines; a label that the frame would cut or another one covers is left out."""
+    """Write the values on the contour lines, without labels that the frame would cut or another one covers."""
     taken: list[Bbox] = []
     frame = ax.get_window_extent()
     for label in ax.clabel(contours, fontsize=6.5, fmt="%g", colors=INK, inline=False):
@@ -311,7 +311,7 @@ def missing_cells(panel: MapPanel, reason: str) -> Array:
 
 
 def _outline(x: Array, y: Array, cells: Array, look: dict[str, Any]) -> PathPatch:
-    """Cells of a grid as one hatched shape."""
+    """The ``cells`` (n - 1, m - 1) that are True, as one hatched shape."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -321,7 +321,7 @@ def _outline(x: Array, y: Array, cells: Array, look: dict[str, Any]) -> PathPatc
 
 
 def _legend(drawn: Figure, counts: dict[str, int], looks: dict[str, dict[str, Any]]) -> None:
-    """The reasons under the map, each with its hatch and the number of its states."""
+    """Draw the legend of the reasons under the map, each with its hatch and the number of its states."""
     from matplotlib.patches import Patch
 
     if counts:

@@ -1,4 +1,4 @@
-"""Charts of the force range that a sensitivity costs, and of the sensitivity over the driving pressure."""
+"""Panels of the greatest force range over sensitivity, and of the sensitivity over the driving pressure."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _limits(tradeoff: TradeOff) -> tuple[tuple[float, float], tuple[float, float
 
 
 def tuning_panel(tuning: TuningChart) -> Panel:
-    """Sensitivity over driving pressure with its k = 2 interval, where that is known."""
+    """Panel of sensitivity over driving pressure, with its k = 2 interval where that is known."""
     chosen, working_kPa_per_N, high_kPa_per_N = tuning.chosen, tuning.working_kPa_per_N, tuning.high_kPa_per_N
     at_kPa = chosen.driving_pressure_kPa
     lines = [

@@ -1,6 +1,6 @@
-"""Small multiples: one panel per resin, specimens, pressures and ages distinguished alike on every plot.
+"""Plots of the measured datasheet, most with one panel for each resin.
 
-Marker: specimen. Line and tone: driving pressure. Filled: the youngest age; open: older. Nothing rests on colour alone.
+Markers of runs: shape by specimen, filled at the youngest age, open later; lines of presses: by driving pressure.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
 _LEAST_SPAN = 20.0
-"""Least span of driving pressures, kPa, from which the slack of an axis follows."""
+"""Least span of driving pressures, kPa, from which the margin of an axis is computed."""
 _MOST_TICKS, _COLUMNS = 5, 4
 _LONG = 15
-"""Letters of an entry of a legend that does not fit into a third of a narrow plot."""
+"""An entry of the legend with more letters does not fit into a third of a narrow plot."""
 
 _HEIGHT = 52.0
 _ROW = {2: 60.0, 3: 55.0, 4: 55.0}
@@ -36,11 +36,11 @@ _LEGEND = 4.0
 """Height of a line of the legend, mm."""
 
 SKY = "#3F8FBF"
-"""A tone that stays apart from INK in grayscale, as ACCENT does not."""
+"""A blue that differs from INK in grayscale, which ACCENT does not."""
 _TONES = (INK, SKY, MUTED)
 
 _POINTS = 120
-"""Number of points, about, that are drawn of a branch."""
+"""Approximate number of points drawn of a branch, loading or unloading."""
 _PER_DECADE = 8
 """Points of a relaxation per decade of time."""
 
@@ -50,7 +50,7 @@ Groups = Sequence[ResinGroups]
 def _multiples(
     groups: Groups, draw: Callable[[ResinGroups], Panel], legend: Sequence[PlotLine], shared: str = ""
 ) -> str:
-    """One panel per resin, their axes named once; ``legend`` are lines without points."""
+    """SVG of one panel per resin, drawn by ``draw``; axes are named once. ``legend``: lines without points."""
     panels = [draw(group) for group in groups]
     named = panels[0].x, panels[0].y
     panels = [
@@ -68,7 +68,7 @@ def _multiples(
 
 
 def _plot(groups: Groups, title: str, words: str, *drawing: Any) -> Plot | None:
-    """The plot of groups that have data for it, None without any; several resins take the whole row."""
+    """Plot of ``groups``, or None without any, with caption ``words``; over the whole row for several resins."""
     if not groups:
         return None
     return Plot(_multiples(groups, *drawing), words, title, full=len(groups) > 1)
@@ -81,7 +81,7 @@ def _tone(groups: ResinGroups, pressure_kPa: float) -> PlotLine:
 
 
 def _spots(groups: ResinGroups, comparison: GroupComparison, curve: MeasuredCurve) -> PlotLine:
-    """Look of the points of a run."""
+    """Style of a run's points: marker by specimen, tone by driving pressure, filled for the youngest age."""
     key = comparison.group.key
     young = key.age_days == next(iter(groups.ages))
     marker = MARKERS[groups.sensors.index(curve.run.sensor) % len(MARKERS)]
@@ -103,12 +103,12 @@ _BAND = PlotLine(low=(), high=(), dashes="", label="predicted, 95 %")
 
 
 def _ends(values: Sequence[float], most: int = 2) -> list[float]:
-    """All values if they are few, else the lowest and the highest."""
+    """All values if they are at most ``most``, else the first and the last."""
     return list(values) if len(values) <= most else [values[0], values[-1]]
 
 
 def sensitivities(groups: Groups) -> Plot | None:
-    """Sensitivity over driving pressure, means of the specimens with their intervals in the predicted band."""
+    """Plot of the specimens' mean sensitivity over driving pressure with interval and predicted band, or None."""
     groups = [g for g in groups if any(SENSITIVITY_KEY in b.group.figures for b in g.comparisons)]
     words = "Mean over specimens with its 95 % interval, in the predicted band."
     if not groups:
@@ -144,7 +144,7 @@ def _mean(k: int) -> PlotLine:
 
 
 def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[PlotLine]:
-    """The band between driving pressures; at a single one a bar of ``half`` its width."""
+    """Line of the predictions with its band; at a single driving pressure ``half`` kPa to each side; [] for none."""
     known = {
         b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY_KEY]
         for b in reversed(groups.comparisons)
@@ -162,7 +162,7 @@ def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[PlotLine]:
 
 
 def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) -> list[PlotLine]:
-    """Means with their intervals; ages stand next to one another."""
+    """Means with their intervals; those of different ages stand ``aside`` kPa apart."""
     lines = []
     for comparison in groups.comparisons:
         estimate = comparison.group.figures.get(SENSITIVITY_KEY)
@@ -180,13 +180,13 @@ def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) ->
 
 
 def responses(groups: Groups) -> Plot | None:
-    """Pressure rise over force: every run's points over the predicted curves and their bands."""
+    """Plot of pressure rise over force: points of runs over predicted curves and bands; None without runs."""
     words = "Pressure rise over contact force. {}sensitivity{}"
     return _curves(groups, "Response", words, curves.rises, SENSITIVITY_KEY)
 
 
 def indentations(groups: Groups) -> Plot | None:
-    """Force over indentation in the same way; the band is the stiffness's."""
+    """Plot of force over indentation, drawn as `responses`, with bands of the stiffness; None without runs."""
     words = "Contact force over indentation. {}stiffness{}"
     return _curves(groups, "Force over indentation", words, curves.forces, STIFFNESS_KEY)
 
@@ -209,7 +209,7 @@ def _curves(
 
 
 def _presses(groups: ResinGroups) -> list[curves.Press]:
-    """Runs and the youngest age's predictions; bands of two driving pressures at most: more cover one another."""
+    """Runs, and predictions for their youngest age; bands only at the lowest and the highest driving pressure."""
     shaded_kPa = _ends(groups.driving_pressures_kPa)
     presses: list[curves.Press] = []
     done: set[float] = set()
@@ -231,7 +231,7 @@ def _presses(groups: ResinGroups) -> list[curves.Press]:
 
 
 def loops(groups: Groups) -> Plot | None:
-    """Rise over force in and out, of one run at the lowest and at the highest driving pressure.
+    """Plot of rise over force in and out, of one run at the lowest and one at the highest driving pressure; or None.
 
     More loops in a panel, or those of several specimens, would hide one another.
     """
@@ -262,7 +262,7 @@ def loops(groups: Groups) -> Plot | None:
 
 
 def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:
-    """The first loop run at a driving pressure, or press by hand."""
+    """The first run at a driving pressure with cycles of loading and unloading; None if there is none."""
     members = (one.group for one in groups.comparisons if one.group.key.driving_pressure_kPa == pressure_kPa)
     return next((curve for group in members for curve in group.curves if curve.loop), None)
 
@@ -273,7 +273,7 @@ def _branch(force: Array, rise: Array, look: PlotLine) -> curves.Press:
 
 
 def relaxations(groups: Groups) -> Plot | None:
-    """Force and pressure rise over the logarithm of time, in percent of their value at `FIRST`; every run."""
+    """Plot of force and rise over the logarithm of time in a hold, percent of their value at `FIRST`; or None."""
     words = "Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure."
     legend = [*_key(groups), PlotLine(label="force", width=0.9)]
     legend.append(PlotLine(label="pressure rise", tone=MUTED, width=0.9, dashes=LINES[1]))
@@ -291,7 +291,7 @@ def relaxations(groups: Groups) -> Plot | None:
 
 
 def _relaxation(curve: MeasuredCurve, look: PlotLine) -> list[PlotLine]:
-    """Both channels of a hold, in means over equal shares of a decade."""
+    """Force and rise of a run's hold, averaged over equal steps of log time; [] without a hold past `FIRST`."""
     if curve.relaxation is None:
         return []
     time, *channels = curve.relaxation
@@ -311,7 +311,7 @@ def _relaxation(curve: MeasuredCurve, look: PlotLine) -> list[PlotLine]:
 
 
 def ageings(measured: CampaignReport) -> Plot | None:
-    """Change of sensitivity between ages with its interval, one row a group; and the paper's change in a year."""
+    """Plot of the change of sensitivity between ages with intervals, and the paper's change in a year; or None."""
     rows = measured.ageing
     if not rows:
         return None

@@ -41,7 +41,7 @@ def measured_datasheet(measured: CampaignReport) -> dict[str, bytes]:
 
 
 def described(measured: CampaignReport) -> Sheet:
-    """The whole sheet, its plots drawn."""
+    """The sheet with its plots drawn."""
     campaign, groups = measured.campaign, groups_of(measured.comparisons)
     resins, sensors = {run.resin for run in campaign.runs}, {run.sensor for run in campaign.runs}
     counts = (sensors, "specimen"), (campaign.runs, "run"), (resins, "resin")
@@ -98,7 +98,7 @@ _WORDS = ("passed", "failed", "not decided")
 
 
 def dates(measured: CampaignReport) -> str:
-    """First and last day of the runs."""
+    """First and last day of the runs; "undated" if no run states its date."""
     days = sorted(run.date for run in measured.campaign.runs if run.date is not None)
     if not days:
         return "undated"
@@ -107,7 +107,7 @@ def dates(measured: CampaignReport) -> str:
 
 
 def verdict_box(measured: CampaignReport) -> FramedBlocks:
-    """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
+    """Box with the verdict on each requirement of the target, and notes on runs and parts that are not used."""
     rows: list[Row] = [
         [v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts
     ]
@@ -117,7 +117,7 @@ def verdict_box(measured: CampaignReport) -> FramedBlocks:
 
 
 def _notes(measured: CampaignReport) -> list[str]:
-    """Notes under the verdicts."""
+    """Notes on undecided verdicts, files that are not used, and doubtful parts of records."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
     suspect = [warning for curve in measured.curves for warning in curve.warnings if warning.kind != "note"]
     notes = []
@@ -135,7 +135,7 @@ def _notes(measured: CampaignReport) -> list[str]:
 
 
 def whole_verdict(verdicts: tuple[Verdict, ...]) -> str:
-    """Verdict on the whole target."""
+    """Verdict on the whole target: failed if one requirement is, else undecided if one is, else passed."""
     if not verdicts:
         return "No target given"
     passed = [v.passed for v in verdicts]
@@ -143,7 +143,7 @@ def whole_verdict(verdicts: tuple[Verdict, ...]) -> str:
 
 
 def tiles(measured: CampaignReport) -> list[Tile]:
-    """Name, value, unit, condition of the figures that count; those that were not measured are left out."""
+    """At most six tiles with the main figures, in a fixed order; those that were not measured are left out."""
     tiles = [_extent(measured, SENSITIVITY_KEY, "Sensitivity", "kPa/N"), *_against(measured)]
     for key, name in (("repeatability_kPa_per_N", "Repeatability"), ("part_to_part_kPa_per_N", "Part to part")):
         tiles.append(_worst(measured, key, name, "kPa/N", "standard deviation of the sensitivity"))
@@ -166,7 +166,7 @@ def _with(measured: CampaignReport, key: str) -> list[tuple[GroupComparison, Est
 
 
 def _where(measured: CampaignReport, comparison: GroupComparison) -> str:
-    """A group in words: its resin and age where there are several."""
+    """A group in words: driving pressure, its resin and age where there are several, and its age if not fresh."""
     key, keys = comparison.group.key, [other.group.key for other in measured.comparisons]
     resin = [comparison.label] if len({other.resin for other in keys}) > 1 else []
     age = [key.age] if key.age_days or len({other.age_days for other in keys}) > 1 else []
@@ -174,7 +174,7 @@ def _where(measured: CampaignReport, comparison: GroupComparison) -> str:
 
 
 def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | None:
-    """Tile with the only value, or with the extent from the least to the greatest group."""
+    """Tile with the only value, or the least and the greatest over the groups; None if not measured."""
     pairs = _with(measured, key)
     if not pairs:
         return None
@@ -189,7 +189,7 @@ def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | 
 
 
 def _against(measured: CampaignReport) -> list[Tile]:
-    """Differences of measured from predicted sensitivities, and the number of groups whose intervals overlap."""
+    """Tiles on measured against predicted sensitivities: differences, overlaps of intervals; [] if none predicted."""
     pairs = [
         (b, e, b.predicted[SENSITIVITY_KEY])
         for b, e in _with(measured, SENSITIVITY_KEY)
@@ -214,7 +214,7 @@ def _against(measured: CampaignReport) -> list[Tile]:
 
 
 def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) -> Tile | None:
-    """Tile with the greatest value of a figure over the groups."""
+    """Tile with the greatest value of a figure over the groups; None if not measured."""
     pairs = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
     if not pairs:
         return None
@@ -224,7 +224,7 @@ def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) 
 
 
 def conditions(measured: CampaignReport) -> list[list[str]]:
-    """Rig, air, runs and model: quantity and value."""
+    """Rows (quantity, value) on rig, air, runs and model."""
     campaign, rig, scene = measured.campaign, measured.campaign.rig, measured.scene
     kinds = Counter(run.kind for run in campaign.runs)
     ambient_kPa = campaign.ambient_pressure_kPa
@@ -253,7 +253,7 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
 
 
 def _as_read(measured: CampaignReport) -> str:
-    """Greatest distance of a run's driving pressure from its nominal one."""
+    """Greatest distance of a run's driving pressure from its nominal one, in words."""
     off_kPa = [
         curve.driving / KPA - curve.run.driving_pressure_kPa
         for curve in measured.curves

@@ -26,15 +26,15 @@ from pneutouch.spec.campaign import Campaign
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A group compared with its prediction.
+    """A group of runs compared with its prediction.
 
     Attributes:
         group: The runs and their figures.
         label: Title of the resin.
         state: The predicted state at the group's driving pressure; None if there is none.
-        uncertainty: Uncertainty of the state, as `Evaluation.uncertainty` has it for a state.
-        predicted: Predicted figures by key of `bench.figures.FIGURES`, with the ends of their 95 % band where known:
-            value, low, high.
+        uncertainty: Uncertainty of that state.
+        predicted: Predicted figures by key of `bench.figures.FIGURES`: value, lower and upper end of its 95 % band,
+            each end None if it is not known.
         why: Reason why there is no prediction; empty if there is one.
         published: Measurements of the paper on this sensor, by key of `bench.figures.FIGURES`.
     """
@@ -48,24 +48,24 @@ class GroupComparison:
     published: dict[str, float] = field(default_factory=dict)
 
     def relative_band(self, figure: str) -> tuple[float, float] | None:
-        """Ends of a figure's predicted band, divided by its value; None if it has none."""
+        """Ends of a figure's predicted band, divided by its value; None without a band or if the value is zero."""
         value, low, high = self.predicted.get(figure, (0.0, None, None))
         return None if not value or low is None or high is None else (low / value, high / value)
 
 
 @dataclass(frozen=True)
 class CampaignReport:
-    """A whole campaign.
+    """The results of a whole campaign, from which its measured datasheet is made.
 
     Attributes:
         campaign: The campaign file.
         scene: The design that it is compared with.
         folder: Folder of the campaign, as the user gave it.
-        comparisons: Groups in the order of resin, age and pressure.
-        curves: Every curve read, injections aside.
+        comparisons: Groups with their predictions, in the order of resin, age and driving pressure.
+        curves: Every curve that was read; injections have none.
         failures: Files that are not used, with the message.
         questions: Data that look wrong and were not changed: file or run, and the question.
-        verdicts: Verdicts on the target; empty without one.
+        verdicts: Verdicts on the target; empty without a target.
         injections: Figures of leak and injection runs.
         ageing: Changes of the sensitivity between ages.
         model: Model of the predictions.
@@ -92,10 +92,10 @@ MOST_RUNS = 30
 
 @dataclass(frozen=True)
 class ResinGroups:
-    """The groups of one resin in the order of age and pressure.
+    """The groups of one resin in the order of age and driving pressure.
 
-    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` is True if there is no other
-    resin.
+    ``campaign_pressures_kPa`` are the driving pressures of all resins of the campaign, ascending; ``alone`` is True if
+    there is no other resin.
     """
 
     label: str
@@ -105,7 +105,7 @@ class ResinGroups:
 
     @cached_property
     def sensors(self) -> list[str]:
-        """Names of the specimens; their places are their markers."""
+        """Names of the specimens, sorted; the place of a name in the list gives its marker."""
         return sorted({name for comparison in self.comparisons for name in comparison.group.sensors})
 
     @cached_property
@@ -115,20 +115,20 @@ class ResinGroups:
 
     @cached_property
     def ages(self) -> dict[float, str]:
-        """Ages in days, ascending, and in words."""
+        """Ages in words by age in days, ascending."""
         keys = sorted((comparison.group.key for comparison in self.comparisons), key=lambda key: key.age_days)
         return {key.age_days: key.age for key in keys}
 
 
 def groups_of(comparisons: Sequence[GroupComparison]) -> list[ResinGroups]:
-    """Groups by resin, in their order."""
+    """Comparisons, ordered by resin, gathered into one `ResinGroups` for each resin."""
     every_kPa = tuple(sorted({comparison.group.key.driving_pressure_kPa for comparison in comparisons}))
     by_resin = [tuple(some) for _, some in groupby(comparisons, key=lambda comparison: comparison.group.key.resin)]
     return [ResinGroups(members[0].label, members, every_kPa, len(by_resin) == 1) for members in by_resin]
 
 
 def some(curves: Sequence[MeasuredCurve]) -> list[MeasuredCurve]:
-    """At most `MOST_RUNS` runs, spread evenly over all."""
+    """At most `MOST_RUNS` of the curves, spread evenly over all."""
     step = math.ceil(len(curves) / MOST_RUNS)
     return list(curves[::step]) if step else []
 
@@ -174,7 +174,7 @@ _AGEING = ("Resin", "Driving\nkPa", "Age", "Change\nof S\n%", "95 % interval\n%"
 
 
 def resin_section(groups: ResinGroups) -> list[SheetBlock]:
-    """Every figure of a resin over driving pressure and age, measured and predicted; and those not measured."""
+    """Table of every measured figure of a resin beside its prediction, and names of the figures not measured."""
     found = [(each, b) for each in FIGURES for b in groups.comparisons if each.key in b.group.figures]
     rows = [[each.name, each.unit, *_condition(b), *_figure(each, b)] for each, b in found]
     there = {each.key for each, _ in found}
@@ -241,7 +241,7 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
 
 
 def ageing_table(measured: CampaignReport) -> SheetTable:
-    """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
+    """Resin, driving pressure, age, change in percent, its interval, and the paper's change without sign."""
     rows = []
     for row in measured.ageing:
         at, change, paper = f"{row.driving_pressure_kPa:g}", signed(row.sensitivity_change_percent), DASH
@@ -253,7 +253,7 @@ def ageing_table(measured: CampaignReport) -> SheetTable:
 
 
 def lists(measured: CampaignReport) -> list[SheetBlock]:
-    """Leak and dead volume, failures, questions and warnings, each where there are any."""
+    """Sections on leak and dead volume, failures, questions and warnings; those without entries are left out."""
     injections = [
         [row.sensor, row.figure, number(row.value, 4), number(row.standard_error, 2), row.unit]
         for row in measured.injections
@@ -272,7 +272,7 @@ def lists(measured: CampaignReport) -> list[SheetBlock]:
 
 
 def _warnings(measured: CampaignReport) -> list[list[str]]:
-    """Doubtful parts of the records by reason, with number and first place of each; mere notes are in figures.json."""
+    """Rows on doubtful parts of records, one a reason: used or not, count, first file, its seconds; notes left out."""
     parts: dict[tuple[str, bool], list[tuple[str, SuspectInterval]]] = {}
     for curve in measured.curves:
         for warning in curve.warnings:
@@ -293,7 +293,7 @@ def _listed(
     most: int = MOST,
     merged: int = 0,
 ) -> list[SheetBlock]:
-    """A section with the first rows of a long list; nothing without rows."""
+    """A section with the first ``most`` rows, the number of further ones, and notes; empty without rows."""
     left = len(rows) - most
     more = Text(f"and {left} more: see figures.json" if left > 0 else "", "muted")
     return section(title, SheetTable(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
@@ -346,6 +346,6 @@ TERMS = (
 
 
 def definitions() -> SheetTable:
-    """Name with unit, and meaning: of every figure, then of the tables' other words."""
+    """Table of definitions: of every figure, named with its unit, then of the tables' other words."""
     named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
     return SheetTable([*named, *TERMS])
