@@ -1,1 +1,1 @@
-"""The Python interface: `pneutouch` offers its names. Thin over the evaluation and the workflows."""
+"""The Python interface, whose names `pneutouch` offers: thin functions and objects over the workflows."""

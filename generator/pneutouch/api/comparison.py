@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 class Comparison(show.Documented):
-    """Columns side by side. ``inputs`` holds the values of each field that differs, one for each column;
-    ``predictions`` are of the designs, ``designs`` the `Design` objects that were given."""
+    """Columns side by side. ``inputs`` maps each field that differs to its values, one for each column; ``predictions``
+    are those of the designs, ``designs`` the `Design` objects that were given."""
 
     def __init__(self, result: CompareResult, designs: tuple[Design, ...] = ()) -> None:
         self._result, self.designs = result, designs
@@ -35,12 +35,12 @@ class Comparison(show.Documented):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the columns, all different."""
+        """Labels of the columns, all different."""
         return tuple(comparison_words.labels(self._result.record))
 
     def to_frame(self) -> DataFrame:
-        """Table with a row for each figure and driving pressure (None: of the whole sensor); columns ``value``, ``low``
-        and ``high`` of each label, then ``percent``, its ends and ``exceeds`` of each difference from the first."""
+        """Table with a row for each figure and driving pressure (None: of the whole sensor); columns ``value``,
+        ``low``, ``high`` by label, and for the difference from the first ``percent``, its two ends and ``exceeds``."""
         from pandas import DataFrame, MultiIndex
 
         rows = self._result.record.figures

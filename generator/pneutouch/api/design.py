@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def plot_section(assembly: Assembly, ax: Axes | None) -> Axes:
-    """The hatched section of all bodies through the x axis, lengths in mm; returns the axes."""
+    """Draw the hatched section of all bodies at y = 0 into ``ax`` (None: new), lengths in mm; returns the axes."""
     from pneutouch.report.section import draw_section
 
     ax = _axes(ax)
@@ -44,7 +44,7 @@ def plot_section(assembly: Assembly, ax: Axes | None) -> Axes:
 
 
 def plot_mould(assembly: Assembly, ax: Axes | None, labels: bool) -> Axes:
-    """One cavity of the closed mould in section, turned over as it is poured; returns the axes. Raises InputError."""
+    """Draw one cavity of the closed mould in section, turned over as it is poured. Raises InputError without one."""
     from pneutouch.report.mould import draw_mould
 
     if assembly.mould is None:
@@ -140,7 +140,7 @@ class Design(show.Shown):
     __hash__ = None  # type: ignore[assignment]
 
     def replace(self, name: str | None = None, **fields: Any) -> Design:
-        """The design with fields changed, under another name if one is given, with the title if that is its name."""
+        """A copy with fields changed and, if given, another name, which a title that is the old name becomes too."""
         if name and self.file.document.title == self.name:
             fields = {"title": name, **fields}
         design = type(self).__new__(type(self))
@@ -174,9 +174,9 @@ class Design(show.Shown):
     ) -> Prediction:
         """Predict the figures at driving pressures in kPa, or at one (None: the design's).
 
-        ``model`` is "membrane", "atlas", "solid", "harmonic", "auto", the cheapest whose error meets ``tolerance``, a
-        fraction, or None: the solid, and harmonic for contact off the axis. ``contact_anywhere`` counts an unknown
-        object and place of contact in the interval, as ``contact.anywhere`` of a design does. See
+        ``model`` is "membrane", "atlas", "solid", "harmonic" or "auto": the cheapest whose error meets ``tolerance``, a
+        share or a text such as "2%". None: the solid, and harmonic for contact off the axis; with a tolerance, auto.
+        ``contact_anywhere`` counts an unknown object and place of contact in the interval, as in a design. See
         `evaluation.evaluate` for the rest. Raises InputError if the design cannot work.
         """
         changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
@@ -274,7 +274,7 @@ class Design(show.Shown):
 
     @property
     def bodies(self) -> tuple[Body, ...]:
-        """The print meshes, lengths in mm."""
+        """The print meshes of the sensor's bodies, lengths in mm."""
         return tuple(self.assembly.bodies)
 
     def plot_section(self, ax: Axes | None = None) -> Axes:

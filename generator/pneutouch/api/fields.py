@@ -76,7 +76,7 @@ def number_of(value: Any, name: str) -> float | None:
 
 
 def paths_of(values: Any, name: str, remedy: str) -> tuple[Path, ...]:
-    """Paths that were given as the keyword ``name``; one is a list of one. Raises InputError."""
+    """Paths that were given as the keyword ``name``, in a list or as one path. Raises InputError."""
     given = _entries(values)
     return tuple(path_of(each, name, remedy) for each in (given if isinstance(given, list) else [given]))
 
@@ -116,7 +116,7 @@ def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, A
 
 
 def keyword_options(model: type[AnyOptions], arguments: Mapping[str, Any]) -> AnyOptions:
-    """The options of a command among the arguments of its function; one number or text is a list of one."""
+    """The options of ``model`` among the arguments; one number or text is a list of one. Raises InputError."""
     content = {}
     for key in model.model_fields.keys() & arguments.keys():
         value = _of_keyword(key, _entries(arguments[key]))
@@ -128,7 +128,7 @@ def keyword_options(model: type[AnyOptions], arguments: Mapping[str, Any]) -> An
 
 @contextmanager
 def named_by_keyword(model: type[BaseModel] = DesignFile) -> Iterator[None]:
-    """Name the keyword, and no file, in an error about a value that was given as one."""
+    """In an error about a value that was given as a keyword, name the keyword and no file."""
     try:
         yield
     except PneutouchError as error:

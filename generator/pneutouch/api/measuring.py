@@ -109,11 +109,10 @@ def characterize(
 
     ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as ``{"force":
     {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; ``columns`` may be texts as well, as the command takes
-    them, such as ``"force=-Load:N"``; what they leave out is as the campaign gives it, else
-    found from each file. ``target`` is a target file to compare with; ``evidence`` selects the runs whose evidence
-    `Result.save` plots:
-    "doubtful", "all" or "none". ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` of a single
-    run, None: told from its record. Files that cannot be read are listed under ``failures``.
+    them, such as ``"force=-Load:N"``; what they leave out is as the campaign gives it, else found from each file.
+    ``target`` is a target file to compare with; ``evidence`` selects the runs whose evidence `Result.save` plots:
+    "doubtful", "all" or "none". ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` is that of a
+    single run; None: found from its record. Files that cannot be read are listed under ``failures``.
     """
     from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.characterize.campaign import characterize as run
@@ -169,7 +168,7 @@ def calibrate(
     columns: RecordedColumns = None,
     file_format: Mapping[str, Any] | None = None,
 ) -> FittedSensor:
-    """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
+    """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, and the calibration.
 
     ``hold_out_kPa`` are driving pressures to predict from the others. The calibration goes into the user's folder under
     the name ``save`` (None: of design and sensor); it replaces another only with ``replace``. The design with it is

@@ -102,7 +102,7 @@ class PredictedState(show.Shown):
                 vars(self)[name] = self.figures[key]
 
     def to_frame(self) -> DataFrame:
-        """The curves as a table with one column each."""
+        """The curves as a table: a row for each point, a column for each curve."""
         from pandas import DataFrame
 
         return DataFrame(self.curve)
@@ -164,7 +164,7 @@ class Prediction(show.Documented):
         return DataFrame(rows, Index([s.driving_pressure_kPa for s in self.states], name="driving_pressure_kPa"))
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the pressure rise over the contact force, one line for each state; returns the axes."""
+        """Draw pressure rise over contact force, a line for each state, into ``ax`` (None: new); returns it."""
         from pneutouch.report.chart import draw_panel
         from pneutouch.report.curves import Press, rises, state_look
 

@@ -13,7 +13,7 @@ from pneutouch.results.prediction import ByMixingCurve
 
 @dataclass(frozen=True, repr=False)
 class CheckResult(show.Documented):
-    """The findings of a check, ``passed`` without an error; ``curves``: the figures by every mixing curve of a mix."""
+    """The findings of a check, ``passed`` without an error; ``curves``: figures by each mixing curve of a mix."""
 
     name: str
     findings: tuple[Finding, ...]
@@ -54,7 +54,7 @@ class Result(show.Shown):
         return dict(self._document)
 
     def save(self, out: str | Path = "outputs") -> Path:
-        """Write the command's folder into ``out`` and return it."""
+        """Write the command's folder into ``out`` and return it. Raises InputError if it is written already."""
         if self._write is None:
             raise InputError(f"{self.title} is written already")
         return self._write(Path(out))

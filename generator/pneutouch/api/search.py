@@ -83,7 +83,7 @@ def _size(design: FoundDesign) -> str:
 
 
 def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design | None]:
-    """Keyword arguments of a target, with the name of a base that is a `Design` in its place, and that design."""
+    """Keyword arguments of a target with a base that is a `Design` replaced by its name; and that design, or None."""
     setting = fields.get("setting")
     inner = setting.get("base") if isinstance(setting, Mapping) else None
     if isinstance(inner, Design) and isinstance(setting, Mapping):
@@ -93,7 +93,7 @@ def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design |
 
 
 class GivenBase:
-    """A library that holds a given design under its name, and the words that replace the path of its temporary file."""
+    """A library that holds a design under its name, and the words that replace the path of its temporary file."""
 
     def __init__(self, design: Design | None, folder: Path) -> None:
         self._folder, self._design, self.library = folder, design, Library.default()
@@ -114,7 +114,7 @@ class GivenBase:
         return replace(record, base=self._design.name if where == WHERE else where)
 
     def blame(self, error: PneutouchError) -> None:
-        """Name the design's own file, or none, in an error, in place of the temporary file."""
+        """In an error, name the design's own file, or none, in place of the temporary file."""
         for each in (error, *error.others):
             if self._design is not None and each.file is not None and self._holds(each.file):
                 each.file = self._design.source.where
@@ -136,7 +136,7 @@ def given_base(design: Design | None) -> Iterator[GivenBase]:
 
 
 class Selection(show.Documented):
-    """Designs that meet a target, best first; empty if none does. `to_dict` names the misses of each."""
+    """Designs that meet a target, best first; empty if none does. `to_dict` has the margins of each."""
 
     def __init__(self, designs: tuple[Design, ...], record: SelectedRecord) -> None:
         self.designs, self._record = designs, record
@@ -174,7 +174,7 @@ _REMEDY = "give the path of a target file, or keyword arguments such as sensitiv
 
 
 def select(target: str | Path | None = None, **fields: Any) -> Selection:
-    """Designs for a target: a target file, keyword arguments named as its keys, or both (keywords first).
+    """Designs for a target: a target file, keyword arguments named as its keys, or both; keywords override the file.
 
     ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. ``base`` may be a `Design`. With
     ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it. ``have``

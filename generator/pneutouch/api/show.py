@@ -87,7 +87,7 @@ def shorten(line: str) -> str:
 
 
 def html(head: str, rows: Iterable[Sequence[Any]], columns: Sequence[str], picture: Assembly | None) -> str:
-    """A table of ``rows``, with the section of an assembly above it."""
+    """A table of ``rows`` under ``head``, with the section of an assembly, if one is given, above it."""
     from pneutouch.report.section import section_picture
 
     drawn = "" if picture is None else section_picture(picture)
@@ -130,32 +130,32 @@ class Listing(Shown, dict[str, str]):
 
 
 def designs() -> Listing:
-    """The designs: the user's and the shipped ones."""
+    """Titles of the designs by name: the user's and the shipped ones."""
     return _listed("designs")
 
 
 def materials() -> Listing:
-    """The cured materials."""
+    """Titles of the cured materials by name."""
     return _listed("materials")
 
 
 def calibrations() -> Listing:
-    """The calibrations of sensors, which ``design.replace(calibration=NAME)`` takes."""
+    """Titles of the calibrations by name, which ``design.replace(calibration=NAME)`` takes."""
     return _listed("calibrations")
 
 
 def printers() -> Listing:
-    """The printers."""
+    """Titles of the printers by name."""
     return _listed("printers")
 
 
 def gauges() -> Listing:
-    """The pressure gauges, which ``design.replace(gauge=NAME)`` takes."""
+    """Titles of the pressure gauges by name, which ``design.replace(gauge=NAME)`` takes."""
     return _listed("gauges")
 
 
 def _listed(kind: str) -> Listing:
-    """Titles by name; the error in place of the title of a file that cannot be read."""
+    """Titles by name; for a file that cannot be read the error in place of the title."""
     listed = Listing()
     for entry in listing(kind)[kind]:
         listed[entry["name"]] = f"cannot be read: {entry['error']}" if "error" in entry else entry["title"]

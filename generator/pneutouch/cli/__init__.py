@@ -1,4 +1,4 @@
-"""The command line: one module a command, loaded where the command is used."""
+"""The command line: a module for one command or two, loaded where a command of it is used."""
 
 import gc
 import os
@@ -20,12 +20,12 @@ Without that the arrays of each Newton step are returned and requested again: a 
 """
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""Variables that set the threads of the linear algebra, one here: the order of its sums, and so the last digits of a
-result, follow their number; and where others use the cores two threads wait for one another, which took 450 s in place
-of 35 s of a press off the axis on a busy machine."""
+"""Variables that set the number of threads of the linear algebra, here one. The order of its sums, and so the last
+digits of a result, follow that number; and on a busy machine two threads wait for one another: a press off the axis
+took 450 s in place of 35 s."""
 
 _UNWOUND = 2
-"""Exit codes from this one on are those of commands that an error or a stop signal ended."""
+"""Least exit code of a command that an error or a stop signal ended."""
 
 
 def run() -> None:

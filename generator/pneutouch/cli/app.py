@@ -1,4 +1,4 @@
-"""The command line: its common options and how its words are run. Heavy packages load inside the commands."""
+"""The command line: common options, ``predict`` and ``list``, and how words are run. Heavy packages load later."""
 
 import io
 import os
@@ -35,7 +35,7 @@ DesignArgument = Annotated[
 
 
 def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
-    """Keep the names of the fields that are given here, so that an error on one does not blame the file."""
+    """Note the fields that ``--set`` gives, so that an error on one of them does not name the design's file."""
     context.meta.setdefault(CHANGES, []).extend(text.partition("=")[0].strip() for text in assignments or [])
     return assignments
 
@@ -133,7 +133,7 @@ ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design fil
 
 @contextmanager
 def reporting() -> Iterator[None]:
-    """Turn a fault of ours into one message on stderr and exit code 3; errors of the library go on to `Commands`."""
+    """Turn errors of files and memory into the library's, and any other fault into a message and exit code 3."""
     try:
         yield
     except (typer.Exit, PneutouchError):
@@ -265,7 +265,7 @@ def design_folder(out: Path | None) -> Path:
 
 
 def changes(set_: list[str] | None, calibration: str | None = None, *, anywhere: bool = False) -> dict[str, Any]:
-    """Values by field from --set, and from --calibration and --contact-anywhere."""
+    """Values by ``table.key``, from the options --set, --calibration and --contact-anywhere."""
     from pneutouch.spec.read import parse_changes
 
     named = {} if calibration is None else {"calibration": calibration}
@@ -273,7 +273,7 @@ def changes(set_: list[str] | None, calibration: str | None = None, *, anywhere:
 
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:
-    """Raise InputError if one of ``flags`` (by parameter) was given, which do not go with ``what``."""
+    """Raise InputError if one of ``flags`` (flag by parameter), which cannot be given with ``what``, was given."""
 
     given = [
         flag for key, flag in flags.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
@@ -291,7 +291,7 @@ def print_json(document: Any) -> None:
 
 
 def print_written(record: Any, folder: Path, text: Callable[[Any], str], *, json: bool) -> None:
-    """Print the record of a folder that was written, as JSON or as ``text``, and the folder."""
+    """Print a record of a folder that was written, with the folder: as JSON, or as ``text`` returns it."""
     if json:
         print_json(replace(record, folder=str(folder)))
     else:
@@ -303,7 +303,7 @@ _BREAKS = "=@:"
 
 
 def joined(pieces: Sequence[str], at: int) -> tuple[list[str], int, str]:
-    """The words as typed, the place of the one to complete, and what of it stands before the piece that bash completes.
+    """The words as typed, the number of the one to complete, and its part before the piece that bash completes.
 
     ``pieces`` are COMP_WORDS, in which a run of `_BREAKS` is a piece of its own; ``at`` is COMP_CWORD. Bash completes
     an @ with what follows it: it may begin the name of a host.
@@ -358,7 +358,7 @@ def invoked(words: list[str]) -> int:
 
 
 def _about(error: Any) -> str:
-    """Problem with the words of a command line, and the command that lists its options."""
+    """Message of an error in the words of a command line, with the command that lists the options."""
     message = re.sub(r"'(-[^' ]*)'", r"\1", error.format_message()).replace("'", '"').rstrip(".")
     message = re.sub(r"Input should be (a )?(valid )?", r"must be \1", message).split(", unable to parse")[0]
     message = message.replace("a integer", "a whole number")

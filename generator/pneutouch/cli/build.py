@@ -179,7 +179,7 @@ def _evaluated(
 
 
 def _calibrated_name(design: str, changed: dict[str, Any]) -> str | None:
-    """Name of the build of a calibrated sensor, which is not the design's; None without calibration."""
+    """Name of the build of a calibrated sensor, different from the design's; None without calibration."""
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.workflows.build import calibrated_name
 
@@ -231,7 +231,7 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
-    """The plan of the voxel stack; its errors are reported before anything is built."""
+    """The plan of the voxel stack; if it is not possible, it raises its error before anything is built."""
     from pneutouch.workflows.build_voxels import check_stack_folder, plan_voxels, stack_folder
 
     plan = plan_voxels(evaluation.assembly, mode=mode)
@@ -252,7 +252,7 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
 
 
 def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation:
-    """Evaluate the recipe of a 3MF; reports on stderr programs and libraries of another version when it was made."""
+    """Evaluate the recipe of a 3MF; notes on stderr programs and libraries that had another version then."""
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import evaluate_recipe, other_versions, read_recipe
     from pneutouch.spec.values import plain_name

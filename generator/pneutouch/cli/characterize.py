@@ -105,7 +105,7 @@ def characterize(
 
 
 def _check(evidence: str, kind: str | None) -> None:
-    """Check the options that choose among names. Raises InputError with the nearest one."""
+    """Raise InputError, which suggests the nearest name, if ``evidence`` or ``kind`` is no known one."""
     from pneutouch.errors import InputError, nearest
     from pneutouch.workflows.characterize.campaign import EVIDENCE
 
@@ -123,7 +123,7 @@ def _report_next(
     set_: list[str] | None,
     read: list[str],
 ) -> None:
-    """Report the next command: the fit of a sensor or, where the fit does not cover the design, the comparison."""
+    """Report the next command: `calibrate` if the fit covers the design, else `compare`; none without runs to fit."""
     campaign = outcome.measured.campaign
     fitted = sorted({run.sensor for run in campaign.runs if run.kind in ("steps", "injection")})
     if not fitted:
@@ -141,7 +141,7 @@ _NAMED = 12
 """Greatest number of runs whose kind is listed one by one."""
 
 _SHALLOWER = 0.01
-"""Share by which a measured depth may differ from `predict`'s without a word: figures change less than that."""
+"""Relative difference from the depth of `predict` up to which a measured depth is not mentioned."""
 
 
 def measured_text(measured: "MeasuredCampaign") -> str:
@@ -170,7 +170,7 @@ def measured_text(measured: "MeasuredCampaign") -> str:
 
 
 def _warnings(runs: "Sequence[MeasuredRun]") -> list[str]:
-    """Line with the counts of the parts of records that were left out, and that are noted but used."""
+    """Line with the counts of doubtful parts of records, left out or used; empty without such parts."""
     every = [warning for run in runs for warning in run.warnings if warning.kind != "note"]
     left = sum(not warning.used for warning in every)
     if not every:

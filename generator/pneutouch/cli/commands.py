@@ -18,7 +18,7 @@ from pneutouch.stopping import refuse_stopped
 
 
 def with_plain_numbers(command: Any) -> Any:
-    """The command, whose number options refuse texts that `plain_number` does not read."""
+    """Make the number options of a command refuse texts that `plain_number` does not read; returns it."""
     for parameter in command.params:
         if isinstance(parameter.process_value, partial):
             # A command may be requested more than once.
@@ -28,7 +28,7 @@ def with_plain_numbers(command: Any) -> Any:
 
 
 def _processed(name: str, process: Any, context: Any, given: Any) -> Any:
-    """The value of a parameter. Raises InputError if a number was made of a text that is no plain number."""
+    """The value of a parameter. Raises InputError if it is a number and its text is not a plain one."""
     made = process(context, given)
     texts = given if isinstance(given, list | tuple) else [given]
     values = made if isinstance(made, list | tuple) else [made]
@@ -92,14 +92,14 @@ def _entries() -> dict[str, CommandEntry]:
 
 
 class Commands(TyperGroup):
-    """The commands. An error of the library ends a command with a message that names its options, and an exit code."""
+    """The group of all commands. An error of the library ends a command with a message and an exit code."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names in the order of the help."""
         return list(_entries())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """A command, whose module is imported."""
+        """The command of a name, whose module is imported; None if there is none."""
         if cmd_name in _entries() and cmd_name not in self.commands:
             module = import_module(f"pneutouch.cli.{_entries()[cmd_name].module}")
             infos = module.app.registered_commands
@@ -122,12 +122,12 @@ class Commands(TyperGroup):
                 formatter.write_dl([(name.ljust(widest), entry.summary) for name, entry in entries.items()])
 
     def make_context(self, *given: Any, **more: Any) -> Any:
-        """The context of the words given."""
+        """The context of the words given; Typer's message on a wrong word is put on one line."""
         with _plain_words():
             return super().make_context(*given, **more)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Run the command; an error of the library becomes a message, in the command's options, and an exit code."""
         try:
             with _plain_words():
                 return super().invoke(ctx)

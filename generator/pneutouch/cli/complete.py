@@ -10,13 +10,13 @@ from pneutouch.spec.values import plain_number
 
 
 def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
-    """Completion of names of these kinds, such as materials, and of designs as ``DESIGN@CALIBRATION``.
+    """A function that completes names of these kinds, such as materials; designs also as ``DESIGN@CALIBRATION``.
 
-    With ``listed`` it completes the last of names with commas between.
+    With ``listed`` it completes the last of several names with commas between.
     """
 
     def complete(incomplete: str) -> list[str]:
-        """The names that begin with ``incomplete``."""
+        """Completions of ``incomplete``; with ``listed`` of its last name, with the others before it."""
         from pneutouch.catalogue.library import Library
 
         library = Library.default()
@@ -32,7 +32,7 @@ def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
 
 
 def coupon_names(incomplete: str) -> list[str]:
-    """Completes the last of a list of coupons."""
+    """Completions of the last of several names of coupons with commas between."""
     from pneutouch.spec.coupon import COUPON_NAMES
 
     before, comma, word = incomplete.rpartition(",")
@@ -40,12 +40,12 @@ def coupon_names(incomplete: str) -> list[str]:
 
 
 def simulators(incomplete: str) -> list[str]:
-    """Completes the name of a simulator."""
+    """Completions of the name of a simulator."""
     return [name for name in ("mujoco", "urdf") if name.startswith(incomplete)]
 
 
 def assignment(incomplete: str) -> list[str]:
-    """Completes ``table.key=``, and after it a name where the key takes one."""
+    """Completions of ``table.key=``, and after it of a name where the key takes one."""
     from pneutouch.spec.design import DesignFile
     from pneutouch.spec.fields import declarations, table_of
 
@@ -63,14 +63,14 @@ def assignment(incomplete: str) -> list[str]:
 
 
 def document_kinds(incomplete: str) -> list[str]:
-    """Completes the name of a kind of document."""
+    """Completions of the name of a kind of document."""
     from pneutouch.schemas import document_kinds as known
 
     return [name for name in known() if name.startswith(incomplete)]
 
 
 def percent_of(text: str, parameter: str) -> float:
-    """Number in per cent that a text states; without the sign a number below 1 is a share. Raises InputError."""
+    """Percentage that a text states, above 0, at most 100; below 1 without % it is a share. Raises InputError."""
     number = text.strip().removesuffix("%").strip()
     try:
         value = plain_number(number)
@@ -92,7 +92,7 @@ _DAYS = {"d": 1.0, "w": 7.0, "m": 365.0 / 12.0, "y": 365.0}
 
 
 def years_of(text: str, parameter: str) -> float:
-    """The years of a time such as 90d, 8w, 6m or 1y. Raises InputError."""
+    """Years, from 0 to 1, of a time such as 90d, 8w, 6m or 1y. Raises InputError."""
     number, unit = text.strip()[:-1], text.strip()[-1:]
     try:
         value = plain_number(number) * _DAYS[unit] / _DAYS["y"]
@@ -105,5 +105,5 @@ def years_of(text: str, parameter: str) -> float:
 
 
 def error_in_percent(context: typer.Context, parameter: typer.CallbackParam, text: str | None) -> str | None:
-    """Text of a numerical error in per cent with the sign, which the library reads as such. Raises InputError."""
+    """Text of a numerical error in percent, with the sign; None if none is given. Raises InputError."""
     return None if text is None else f"{percent_of(text, parameter.name or ''):.12g}%"

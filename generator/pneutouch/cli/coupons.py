@@ -90,7 +90,7 @@ def coupons(
 
 
 def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> None:
-    """Write local profiles from a results file and report what changed."""
+    """Write local profiles from a results file and report the changes. Raises InputError with any other option."""
     from pneutouch.errors import InputError
 
     if given:
@@ -106,7 +106,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
 
 
 def _options(given: dict[str, Any]) -> CouponOptions:
-    """The options given. Raises InputError for copies that are not a number."""
+    """The order of coupons from the options given. Raises InputError for copies that are not a number."""
     from pneutouch.errors import InputError
     from pneutouch.workflows.coupons.order import CouponOptions
 
@@ -123,7 +123,7 @@ def _options(given: dict[str, Any]) -> CouponOptions:
 
 
 def results_text(report: CouponReport) -> str:
-    """The figures, what each profile changes, the files written, and remarks."""
+    """The measured figures, the changes of each profile, the files written, and notes."""
     figures = [
         [f.about, f.name, f"{f.value:.4g}", "" if f.spread is None else f"± {f.spread:.2g}", _count(f.count)]
         for f in report.figures
@@ -143,7 +143,7 @@ def _count(count: int | None) -> str:
 
 
 def _shown(quantity: Mapping[str, Any] | None) -> str:
-    """The number of a quantity, or the least size of a feature."""
+    """A quantity as text: its value or its range, or the least size of a feature."""
     if quantity is None:
         return "not known"
     if "recommended" in quantity:

@@ -1,4 +1,4 @@
-"""Options of a command made from its declared options, or the fields of a file: unit, type and help stand once."""
+"""Options of commands, made of fields declared in ``spec/``: there unit, type and help are written once."""
 
 import inspect
 import operator
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class FieldOption(NamedTuple):
-    """The field ``table.key`` behind an option; ``parse`` reads an option whose text has its own form, ``metavar``.
+    """The field ``table.key`` behind an option; ``parse`` turns its text into a value, ``metavar`` shows its form.
 
     ``table`` is empty for a field of the model itself; ``flag`` None: named as the parameter.
     """
@@ -36,10 +36,10 @@ class FieldOption(NamedTuple):
 
 
 def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
-    """Decorator that gives a command an option for each field, passed as a keyword, None if left out."""
+    """Decorator that gives a command an option for each field, passed as a keyword, None if it is left out."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
-        """The command with the signature that has the options."""
+        """The command, whose signature then has the options."""
         hints = typing.get_type_hints(command, include_extras=True)
         written = [
             p.replace(annotation=hints.get(p.name, p.annotation))
@@ -56,7 +56,7 @@ def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> C
 
 
 def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Tables of a file that holds the options given. Raises InputError if a text is not of its form."""
+    """Values by key by table, as in a file, of the options given. Raises InputError if a text is not of its form."""
     tables: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
         if value is not None:
@@ -70,7 +70,7 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
 
 @contextmanager
 def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Iterator[None]:
-    """Name the option, and no file, in an error about a field of ``where`` that was given as one.
+    """In an error on a field of the file ``where`` that was given as an option, name the option and no file.
 
     ``given`` holds the options' parameters by ``table.key``. With ``alone`` there are only options: ``where`` is no
     file, and is not named.
@@ -89,12 +89,12 @@ def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Itera
 
 
 def with_options(model: type[Options]) -> Callable[[Callable[..., None]], Any]:
-    """Decorator that gives a command an option for each field of ``model``, which `given` makes of them."""
+    """Decorator that gives a command an option for each field of ``model``; `given` makes a model of them."""
     return with_fields(model, _flags(model))
 
 
 def given(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
-    """The ``model`` of the options that were given. Raises InputError that names the parameter, as the field."""
+    """A ``model`` with the options given, defaults for the others. Raises InputError that names the parameter."""
     options = _flags(model)
     stated = {name: value for name, value in values.items() if name in options}
     with named_by_flag({key: key for key in options}, "", alone=False):
@@ -103,7 +103,7 @@ def given(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
 
 @cache
 def _flags(model: type[Options]) -> dict[str, FieldOption]:
-    """The options of a command by their parameters, which are named as the fields."""
+    """The options for the fields of ``model``, by parameter; a parameter is named as its field."""
     options = {}
     for field in declarations(model):
         flag, metavar = flag_of(model, field.key), extra_of(model, field.key)["metavar"]
@@ -121,7 +121,7 @@ def _parser(model: type[Options], key: str, flag: str) -> Callable[[Any], Any] |
 
 
 def words(texts: Iterable[str], separator: str = ",") -> list[str]:
-    """Words of an option, which are separated by ``separator``; the option may be repeated."""
+    """Words of an option that has ``separator`` between them, or is repeated."""
     return [word.strip() for text in texts for word in text.split(separator) if word.strip()]
 
 
@@ -151,7 +151,7 @@ def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspec
 
 
 def _default(table: type[BaseModel], field: Declaration) -> Any:
-    """Default of an option as a user would type it; None if none is typed, `Parameter.empty` if it is required."""
+    """Default of an option as a user would type it; None if there is nothing to type, `Parameter.empty` if required."""
     if table.model_fields[field.key].is_required():
         return inspect.Parameter.empty
     if field.default is None or isinstance(field.default, bool) or field.default == []:
@@ -218,7 +218,7 @@ def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict
 
 
 def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> list[str]:
-    """The options as they were given, for the next command."""
+    """The options on columns and format as they were given, as words for the next command."""
     words = [word for text in columns or () for word in ("--columns", text)]
     for name in READING_FIELDS:
         if fields.get(name) is not None:

@@ -179,7 +179,7 @@ def _notes(task: ReachedTask, record: DrivingRecord) -> list[str]:
 
 
 def _unreached(task: MissedTask) -> list[str]:
-    """The changes by which a task would be reached."""
+    """Lines on a task that is not reached: pressures at which it may be, and changes by which it would be."""
     lines = [f"{_titled(task)}: no driving pressure gives it"]
     if task.possible_band is not None:
         lines.append(f"  within the uncertainty the sensor in hand may have it at {_band(task.possible_band)} kPa")

@@ -71,7 +71,7 @@ def new(
 
 
 def next_of_profile(kind: str, path: Path) -> tuple[tuple[str, ...], str]:
-    """The command that reads a copy at ``path``, and the steps before it."""
+    """The next command for a copy of ``kind`` at ``path``, and the step by hand before it."""
     name = path.stem
     if kind == "printers":
         return ("coupons", "--profile", name), f"put the title, the resins and the numbers of your machine into {path}"

@@ -61,7 +61,7 @@ def plan(
 
 
 def plan_text(plan: "PlannedCampaign") -> str:
-    """The tests with their times, and the greatest values expected of each resin at each driving pressure."""
+    """The tests with their times, and for each resin and driving pressure the last point that is predicted."""
     tests = _tests(plan)
     rows = []
     for resin in plan.resins:

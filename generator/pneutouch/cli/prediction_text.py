@@ -1,4 +1,4 @@
-"""Output of the commands for people: plain text tables that fit a terminal."""
+"""Predictions, findings and lists as text for people: tables that fit a terminal."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
 
 
 def _anywhere(contact: ContactAnywhere | None) -> list[str]:
-    """Errors of a force that is read by the central calibration if place and object are unknown."""
+    """Line on the uncertainty of the force read if place and object of contact are unknown; empty if not stated."""
     if contact is None:
         return []
     if contact.unknown is not None:
@@ -84,7 +84,7 @@ def _anywhere(contact: ContactAnywhere | None) -> list[str]:
 
 
 def _calibrated(calibration: CalibratedBy | None) -> list[str]:
-    """Specimen that the figures stand for, measured or simulated."""
+    """Line on the specimen, measured or simulated, that the figures hold for; empty without calibration."""
     if calibration is None:
         return []
     made = f"{SIMULATED}: " if calibration.simulated else ""
@@ -129,7 +129,7 @@ def _state_table(states: Sequence[StateRecord]) -> str:
 
 
 def _as_drawn(prediction: PredictionRecord) -> list[str]:
-    """The figures with the gas of connector and tube as drawn, where the design states none."""
+    """Lines on the figures with the gas as drawn, if the design states a dead volume of zero; else empty."""
     volume_mL = prediction.dead_volume_as_drawn_mL
     if volume_mL is None:
         return []
@@ -191,7 +191,7 @@ def _interval(ends: IntervalRecord | None) -> str:
 
 
 def _uncertainty(state: StateRecord) -> list[str]:
-    """Advice on the first thing to measure; or the reason why nothing is known."""
+    """Line on what to measure first, or on why the uncertainty is not known."""
     assert state.uncertainty is not None
     if state.uncertainty.unknown is not None:
         return [f"uncertainty not known: {state.uncertainty.unknown}"]
@@ -235,7 +235,7 @@ def finding_line(finding: Finding) -> str:
 
 
 def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
-    """The listing as text."""
+    """The lists by kind as text, each name with its title."""
     blocks = []
     for group, entries in content.items():
         rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), _titled(entry)] for entry in entries]

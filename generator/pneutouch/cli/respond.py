@@ -92,7 +92,7 @@ _HEAD = ["kPa", "data", "slow kPa", "greatest kPa", "last kPa", "resonance Hz", 
 
 
 def respond_text(record: LoadResponse) -> str:
-    """Readings of the load in every state."""
+    """Table of the signal at each driving pressure, by each series of relaxation data."""
     sine = record.sine_Hz
     load = "step" if sine is None else f"sine of {sine:g} Hz"
     sources = list(dict.fromkeys(state.relaxation_source for state in record.states))

@@ -143,7 +143,7 @@ def _pascals(pressure_kPa: float | None) -> str:
 
 
 def separation_text(record: SeparationRecord) -> str:
-    """Domes that separate two patterns, best first."""
+    """Table of the domes that separate two patterns, best first, or a sentence that none does."""
     one, two = (f"{pattern.pitch_mm:g} mm at {pattern.depth_mm:g} mm" for pattern in record.patterns)
     if not record.domes:
         return f"none of {record.candidates} candidates shows both {one} and {two} above the noise"

@@ -72,11 +72,11 @@ SELECT_FIELDS = {
     "tunability": FieldOption("weights", "tunability"),
     "contact_anywhere": FieldOption("weights", "contact_anywhere"),
 }
-"""Field of a target by the parameter of its option."""
+"""The field of a target file that each option sets, by the option's parameter."""
 
 
 def target_words(target: Target) -> list[str]:
-    """The options that give the same target as a file, in the order of `SELECT_FIELDS`."""
+    """The options that state the target, in the order of `SELECT_FIELDS`, then ``--set``."""
     words = []
     for name, option in SELECT_FIELDS.items():
         table = getattr(target, option.table)
@@ -89,7 +89,7 @@ def target_words(target: Target) -> list[str]:
 
 
 def typed(field: str, value: Any) -> str:
-    """A field of a target, ``table.key``, and its value, as the option that is typed for it."""
+    """The option, as it is typed, that gives the target's ``field``, ``table.key``, a value."""
     if field == "setting.assignments":
         return f"--set {shlex.quote(value)}"
     table, _, key = field.partition(".")
@@ -110,7 +110,7 @@ def _text(value: Any, unit: str) -> str:
 
 
 _FLAGS_ALONE = "select"
-"""Name in place of the target's file if none is given."""
+"""Name that errors show in place of the target's file if none is given."""
 
 
 @app.command()
@@ -198,7 +198,7 @@ def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
 
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str], have: Path | None) -> Target:
-    """The target of a file, with options in place of its fields; or of options only."""
+    """The target of a file, with options in place of its fields; or of options only. Raises InputError."""
     from pneutouch.catalogue.library import read_given
     from pneutouch.spec.files import design_inside
     from pneutouch.spec.read import validate

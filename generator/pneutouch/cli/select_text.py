@@ -37,7 +37,7 @@ HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 
 
 def answer_text(answer: TargetAnswer, typed: Typed) -> str:
-    """The answer to a target of any kind; ``typed`` gives fields to change as options."""
+    """The answer to a target of any kind; ``typed`` writes a field to change as an option."""
     if isinstance(answer.run, ProcessSelection):
         return processes_text(answer.run)
     if isinstance(answer.run, GradedSelectionRun):
@@ -47,7 +47,7 @@ def answer_text(answer: TargetAnswer, typed: Typed) -> str:
 
 
 def selection_text(selection: SelectionRun, enough: Sequence[str] = ()) -> str:
-    """Ranked designs, or why there are none and what would make one possible."""
+    """Ranked designs; or the nearest one and its misses, with the lines ``enough`` on changes that suffice."""
     answer, notes, left = selection.answer, search_notes(selection), remarks(selection)
     head = [*HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *HEAD[8:]]
     head = head if selection.by_solid is None else [*head[:-1], "plate S"]
@@ -80,7 +80,7 @@ def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
 
 
 def _place(choice: Candidate) -> str:
-    """Addition of an unknown place of contact to the uncertainty, in words."""
+    """Uncertainty that an unknown place of contact adds, in words."""
     return "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
 
 

@@ -1,9 +1,8 @@
 """Output to people: text wrapped to their terminal, severities in colour there, and streams that may be closed.
 
 In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured unless FORCE_COLOR requires it. Tables
-fit the width of the terminal; their lines stay whole if stdout is no terminal. A command between a target and a
-measured sensor ends with the command that comes next. Progress goes to stderr: a bar on a terminal, else one line for
-each stage.
+fit the width of the terminal; their lines stay whole if stdout is no terminal. Commands that lead from a target to a
+measured sensor end by naming the next one. Progress goes to stderr: a bar on a terminal, else one line for each stage.
 """
 
 import contextlib
@@ -50,7 +49,7 @@ def width(stream: TextIO) -> int | None:
 
 
 def open_closed_streams() -> None:
-    """Open closed standard streams on the null device: else the next file would get their number and messages."""
+    """Open closed standard streams on the null device: else the next file opened would take their place."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             handle = os.open(os.devnull, os.O_RDWR)
@@ -137,8 +136,8 @@ def table_text(
 
 
 def _lines_of(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) -> list[str]:
-    """The lines of the table. Figures and names stay whole, texts take as many lines as they need; columns that do not
-    fit follow below, after the first one again."""
+    """Lines of a table too wide for ``columns``. Cells up to `_NARROW` letters stay whole, longer ones are wrapped;
+    columns that do not fit follow below, beside the first one again."""
     table = [head, *rows] if head else list(rows)
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     least = [min(each, _NARROW) for each in widths]
@@ -172,7 +171,7 @@ def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[
 
 
 def report_next(*words: object, first: str = "") -> None:
-    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands; ``first`` is a step by hand."""
+    """Print ``next: pneutouch WORDS`` on stderr, quoted for a shell; ``first`` is a step by hand before it."""
     command = shlex.join(["pneutouch", *map(str, words)])
     notify(f"{first}, then: {command}" if first else f"next: {command}")
 
