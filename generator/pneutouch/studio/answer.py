@@ -41,7 +41,7 @@ _DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class PageLine:
-    """Sensitivity over driving pressure, with the ends of its interval where that is known."""
+    """Sensitivity over driving pressure, (n,) each, with the ends of its interval; None if they are not known."""
 
     driving_pressure_kPa: tuple[float, ...]
     sensitivity_kPa_per_N: tuple[float, ...]
@@ -52,14 +52,14 @@ class PageLine:
 
 @dataclass(frozen=True, slots=True)
 class ResinLine(PageLine):
-    """The line of a resin."""
+    """The line of a resin, with the resin's title."""
 
     title: str = field(kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
 class PageCurves:
-    """Lines of the design, None if its interval is not known, and of every resin once they are asked for."""
+    """The line of the design, None if there is none, and those of all resins, None in a quick answer."""
 
     design: PageLine | None
     resins: tuple[ResinLine, ...] | None = None
@@ -67,7 +67,7 @@ class PageCurves:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictedDesign:
-    """The prediction as ``predict`` prints it, with the lines of the design and of the resins."""
+    """The prediction as ``predict --json`` prints it, None outside the atlas, and lines to draw."""
 
     prediction: Mapping[str, Any] | None
     curves: PageCurves | None
@@ -85,7 +85,7 @@ class NamedDesign(PredictedDesign):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuickAnswer(NamedDesign):
-    """The answer of the atlas; ``outside`` is the reason if it has none, ``version`` the version of the base's file."""
+    """The answer of the atlas, without intervals; ``outside``: why it has none; ``version``: of the base's file."""
 
     version: str
     drawing: DrawnDesign
@@ -102,14 +102,14 @@ class FullAnswer(NamedDesign):
 
 
 class Answers:
-    """Answers of the atlas for designs ``bases``; the last design is kept, for its intervals are asked for next."""
+    """Answers of the atlas on designs from ``bases``; it keeps the last design, whose intervals are asked for next."""
 
     def __init__(self, bases: Mapping[str, str], library: Library) -> None:
         self._bases, self._library = bases, library
         self._last: tuple[Question, Evaluation] | None = None
 
     def quick(self, question: Question) -> QuickAnswer:
-        """Drawing, prediction and curve without intervals, if the atlas answers. Raises InputError naming the field."""
+        """Drawing; where the atlas answers prediction and curve, no intervals. Raises InputError at the field."""
         source, version = question.read(self._bases, self._library)
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
@@ -131,7 +131,7 @@ class Answers:
         return answer(outside=None, prediction=prediction, curves=curves)
 
     def intervals(self, question: Question) -> PredictedDesign:
-        """Prediction with intervals, the design's curve and band, other resins'. Raises InputError naming the field."""
+        """Prediction by the atlas with intervals, curve and band, and all resins. Raises InputError at the field."""
         source, version = question.read(self._bases, self._library)
         question = replace(question, version=version)
         if self._last is None or self._last[0] != question:
@@ -142,12 +142,12 @@ class Answers:
         return PredictedDesign(prediction=Prediction(evaluation).to_dict(), curves=_curves(evaluation))
 
     def view(self, question: Question) -> ViewedDesign:
-        """The bodies as meshes to look at. Raises InputError naming the field."""
+        """The bodies as meshes to look at. Raises InputError that names the field."""
         return _viewed_design(assemble(load_scene(question.source(self._bases, self._library), {}, self._library)))
 
 
 def full_answer(question: Question, bases: Mapping[str, str], library: Library) -> FullAnswer:
-    """The answer of the model that ``predict`` takes.
+    """The answer of the model that ``predict`` takes by default.
 
     Raises PneutouchError if the design cannot work or cannot be computed.
     """
@@ -189,7 +189,7 @@ def _highest(evaluation: Evaluation) -> float:
 
 
 def _banded(evaluation: Evaluation) -> PageLine | None:
-    """Sensitivity of the design over driving pressure with its interval; None if that is not known."""
+    """Sensitivity of the design over driving pressure with its interval; None if the uncertainty is not known."""
     if unknown(evaluation.sensor, evaluation.prediction.model) is not None:
         return None
     drawn = tuning(evaluation, _highest(evaluation))
@@ -223,14 +223,14 @@ def _drawn(values: Array) -> tuple[float, ...]:
 
 
 _TOLERANCE = 0.02
-"""Greatest distance of the drawn section, and of a mesh that is looked at, from the exact surface, mm."""
+"""Greatest distance of the drawn section, and of the meshes, from the exact surface, mm."""
 
 _DRAWN_DIGITS = 3
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnBody:
-    """Loops x, z, x, z and so on, mm, where the plane y = 0 cuts a body."""
+    """Closed loops, each a list x, z, x, z and so on in mm, where the plane y = 0 cuts a body."""
 
     name: str
     role: str
@@ -240,7 +240,7 @@ class DrawnBody:
 
 @dataclass(frozen=True, slots=True)
 class DrawnDesign:
-    """The section through the bodies of a design, and the lengths that its dimensions state, mm."""
+    """The section through the bodies, with lengths in mm: size in x, y, z; ends in z; diameter of the plate."""
 
     bodies: list[DrawnBody]
     inner_radius_mm: float
@@ -253,7 +253,7 @@ class DrawnDesign:
 
 @dataclass(frozen=True, slots=True)
 class ViewedBody:
-    """A body as triangle corners (float32, mm) with normals (int8, in 1/127), both little-endian in base 64."""
+    """A body as triangles: corners (float32, mm) and normals (int8, times 127), little-endian in base 64."""
 
     name: str
     colour: str
@@ -270,7 +270,7 @@ class ViewedDesign:
 
 @dataclass(frozen=True, slots=True)
 class PressedWall:
-    """The faces of the pressed wall and the objects at every solved indentation, r, z, r, z and so on, mm."""
+    """At every solved indentation the outline of the pressed wall, and the object: r, z, r, z and so on, mm."""
 
     driving_pressure_kPa: float
     indentation_mm: list[float]

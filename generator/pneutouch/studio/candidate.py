@@ -35,12 +35,12 @@ if TYPE_CHECKING:
 
 
 FigureRow = tuple[str, str, str]
-"""Name of a figure, the figure with its unit, and an addition to it."""
+"""Name of a figure, its value with the unit, and a remark, which may be empty."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartPlace:
-    """Place of a design on the chart."""
+    """Place of a design on the trade-off chart."""
 
     sensitivity_kPa_per_N: float
     force_N: float
@@ -48,7 +48,7 @@ class ChartPlace:
 
 @dataclass(frozen=True, slots=True)
 class CandidateFigures:
-    """A design that was found: its resin, rows of figures with the digits of ``select``, and its place on the chart."""
+    """A design that was found: resin, rows of figures, and place on the chart; None for a rank or place it has not."""
 
     rank: int | None
     resin: str
@@ -59,7 +59,7 @@ class CandidateFigures:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateCard(CandidateFigures):
-    """A design as the page shows it, with the state that makes it the page's design and the command that saves it."""
+    """A design as the page shows it, with the state that opens it there, and the command that saves it, if any."""
 
     kind: str
     label: str
@@ -70,7 +70,7 @@ class CandidateCard(CandidateFigures):
 
 
 def candidate_figures(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> CandidateFigures:
-    """Figures of a candidate."""
+    """Figures of a candidate; ``rank`` is its place from 1, None if it does not meet the target."""
     pool = choice.pool
     sensitivity, force = float(pool.response.lines.sensitivity[0]), float(pool.force[0])
     rows = (*_figures(selection, choice), *_sizes(selection, choice), *_limits(selection, choice, rank))
@@ -163,7 +163,7 @@ def _flat(design: DesignFile) -> dict[str, Any]:
 
 
 class CandidateStates:
-    """Maker of page states of designs that were found, and of the commands that save them under a free name."""
+    """Maker of page states of the designs found, and of the commands that save them under a free name."""
 
     def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
         self._bases, self._library, self._target, self._name = bases, library, target, free_name()
@@ -178,5 +178,5 @@ class CandidateStates:
         return state_of(design, self._base, self._bases, self._library)
 
     def command(self, rank: int) -> str | None:
-        """The command that saves the design of a rank; None with a shelf, which a command takes from a file."""
+        """Command that saves the design of a rank; None if the target has a shelf, which only a file can give."""
         return saving_command(self._target, rank, self._name) if self._target.have == Shelf() else None

@@ -1,4 +1,4 @@
-"""Jobs of the page on one design: a file that was given to it is opened, or a design is built to all its files."""
+"""Jobs of the page on one design: to open a file that the user gave, and to build a design to all its files."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -166,7 +166,7 @@ def _other_options(options: PredictionOptions) -> list[str]:
 
 
 def _by_name(error: PneutouchError, path: Path) -> InputError:
-    """The error as an InputError whose message shows the file's name without its folder."""
+    """The error, and the further ones it holds, as InputError that shows the file's name without its folder."""
     place = f"{path.parent}/"
     first, *others = [InputError(_words(each).replace(place, "")) for each in (error, *error.others)]
     first.others = tuple(others)
@@ -195,7 +195,7 @@ class BuiltFiles:
 
 @dataclass(frozen=True, slots=True)
 class BuiltDesign:
-    """A design that was built: its files, the datasheet's path and the findings."""
+    """A design that was built: its files, the path of its datasheet, files left out and why, and findings."""
 
     name: str
     question: Question
@@ -208,7 +208,7 @@ class BuiltDesign:
 def build_design(
     arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
 ) -> BuiltDesign:
-    """Build ``question`` into ``folder``, as ``name`` if given. Raises InputError at the field, and RuleBrokenError."""
+    """Build the design of ``question`` into ``folder``. Raises InputError at the field, and RuleBrokenError."""
     question, library = Question.of(arguments.get("question")), Library.default()
     source = question.source(arguments["bases"], library)
     name = arguments.get("name") or calibrated_name(source, {})

@@ -33,7 +33,7 @@ from pneutouch.spec.values import plain_name
 from pneutouch.studio.guard import ChangedFileError
 
 _TWICE = ("contact.plate_diameter_mm",)
-"""Fields that another table has as well: the form shows them only there."""
+"""Fields that the form leaves out, for another table has the same."""
 
 _KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "rigid", "given.materials": "elastomer"}
 
@@ -42,7 +42,7 @@ Option = dict[str, str]
 
 @dataclass(frozen=True, slots=True)
 class FormField:
-    """A field of a form, with the names to choose from."""
+    """A field of a form: its label, bounds, default, kind (see `_kind`), and the names to choose from."""
 
     name: str
     label: str
@@ -58,7 +58,7 @@ class FormField:
 
 @dataclass(frozen=True, slots=True)
 class FormGroup:
-    """The fields of a table."""
+    """A table of a form, with its fields."""
 
     name: str
     fields: list[FormField]
@@ -66,8 +66,8 @@ class FormGroup:
 
 @dataclass(frozen=True, slots=True)
 class DesignForm:
-    """The form of a design: fields, sizes by object, printers by material, and the profiles that cast, the only ones
-    that need a mould."""
+    """The form of a design: its fields, the size fields of each pressing object, the printers that run each material,
+    and the printers that cast, which need a mould."""
 
     groups: list[FormGroup]
     sizes: dict[str, list[str]]
@@ -96,7 +96,7 @@ def target_form(library: Library, bases: Mapping[str, str]) -> TargetForm:
 
 
 def _example_target() -> dict[str, str]:
-    """The target of the shipped examples by ``table.key``, as the form sends it."""
+    """The first shipped target as texts by ``table.key``, as the form sends it."""
     example = next(each for each in examples().values() if each.kind == "target")
     tables = read_toml(example.path)
     content = {f"{table}.{key}": value for table, fields in tables.items() for key, value in fields.items()}
@@ -127,7 +127,7 @@ def designs_of(bases: Mapping[str, str]) -> list[Option]:
 def _groups(
     file: type[BaseModel], library: Library, options: Mapping[str, list[Option]] = MappingProxyType({})
 ) -> list[FormGroup]:
-    """The tables of a file with their fields; ``options`` are the names to choose from that the page gives."""
+    """The tables of a file with their fields; ``options``: choices by ``table.key`` that replace the declared ones."""
     groups = []
     for name in file.model_fields:
         model = table_of(file, name)
@@ -225,7 +225,7 @@ _LONGEST_TEXT = 4000
 
 @dataclass(frozen=True)
 class Question:
-    """A design by ``base`` (of the catalogue, or the one that the studio was started with), with changed fields.
+    """A design as the page sends it: a ``base``, by the page's name for it, with changed fields.
 
     ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out. They
     apply to one ``version`` of the base's file (`version_of`); None accepts any version.
@@ -260,7 +260,7 @@ class Question:
         return self.read(bases, library)[0]
 
     def read(self, bases: Mapping[str, str], library: Library) -> tuple[DesignSource, str]:
-        """The design as `source` gives it, and the version of its base's file that was read."""
+        """The design as `source` returns it, and the version of its base's file that was read."""
         if self.base not in bases:
             raise InputError("unknown design", key="base", value=self.base)
         base = DesignSource.of(bases[self.base], library)
@@ -294,7 +294,7 @@ _WRITTEN = ("designs", "calibrations")
 
 
 class PageLibrary(CachedLibrary):
-    """A cached library that searches for designs and calibrations each time."""
+    """A cached library that looks for designs and calibrations anew each time, for the page writes them."""
 
     def paths(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""

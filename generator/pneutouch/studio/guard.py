@@ -1,7 +1,7 @@
 """Guard of the studio, the files that the page was given, and errors as the page takes them.
 
-The studio answers this machine's browser that was given the address, and no page of another site. Files are kept in
-numbered folders, limited in size and number.
+Only a browser that was given the address is answered, and no page of another site. Files are kept in numbered folders,
+limited in size and number.
 """
 
 import re
@@ -100,10 +100,10 @@ FILES = "/files/"
 """Start of the addresses of files that a job wrote; the job's ticket follows, in place of the key."""
 
 KEY = "pneutouch-key"
-"""Header of the page's requests that holds the key, or in the one to `OPENING` the one-time token."""
+"""Header of the page's requests for the key; in the request to `OPENING` it holds the one-time token."""
 
 OPENING = "/api/open"
-"""Path that returns the key for the token."""
+"""Path that returns the key in exchange for the token."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -270,7 +270,7 @@ class PageResponse:
 
 
 def faults_of(error: PneutouchError) -> PageFault:
-    """The problems of an error."""
+    """The problems of an error and of its ``others``, for the page."""
     return PageFault([_problem(each) for each in (error, *error.others)])
 
 
@@ -305,7 +305,7 @@ def _problem(error: PneutouchError) -> PageProblem:
 
 
 def _fields(error: PneutouchError) -> list[str]:
-    """Form's fields of an error: its key if that is a field, else the fields of a table or file it is about."""
+    """Fields of the form that an error is about: its key if that is a field, else the fields of its table or file."""
     key = (error.key or "").partition("[")[0]
     alone = "." in key or (key in DesignFile.model_fields and table_of(DesignFile, key) is None)
     return [key] if alone else list(error.fields)

@@ -31,7 +31,7 @@ a record.
 """
 
 BRIEF = ("open", "recognise")
-"""Kinds that take a moment: one of them may run at the same time as a job of another kind."""
+"""Kinds that take a moment: one job of these kinds may run beside one of the other kinds."""
 
 LARGEST_MEMORY = 12 << 30
 """Greatest address space of a job, in bytes."""
@@ -68,7 +68,7 @@ def _stop(number: int, frame: Any) -> None:
 
 
 def _end_with_input() -> None:
-    """Stop the job when its input ends early: the studio was killed, and no page takes the answer."""
+    """Stop the process when its input ends early: the studio was killed, and no page takes the answer."""
     os.read(sys.stdin.fileno(), 1)
     os.kill(os.getpid(), signal.SIGTERM)
 

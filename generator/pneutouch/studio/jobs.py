@@ -49,7 +49,7 @@ class JobFile:
 
 @dataclass(frozen=True, slots=True)
 class JobRecord:
-    """State of a job for the page; ``files``, once the job is done, lie below the address of its ``ticket``."""
+    """State of a job for the page; its ``files``, once it is done, can be read at the address of its ``ticket``."""
 
     job: int
     ticket: str
@@ -97,9 +97,9 @@ class Job:
 
 
 class Jobs:
-    """Starts, watches and ends jobs. Their folders lie in ``folder``.
+    """Starts, watches and ends jobs, with a folder each below ``folder``.
 
-    One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run at the same time.
+    One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run beside it.
     """
 
     def __init__(self, folder: Path, command: Sequence[str] = _COMMAND) -> None:
@@ -122,7 +122,7 @@ class Jobs:
         return [job.record for job in self._jobs.values()]
 
     async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
-        """Start a job. Raises ComputationError while another of its sort, brief or long, runs."""
+        """Start a job. Raises ComputationError while another one of its sort, brief (`BRIEF`) or long, runs."""
         brief = kind in BRIEF
         running = [job for job in self._jobs.values() if job.runs and (job.kind in BRIEF) == brief]
         if running:
@@ -151,7 +151,7 @@ class Jobs:
         shutil.rmtree(job.place, ignore_errors=True)
 
     async def close(self) -> None:
-        """End the running job."""
+        """End all running jobs."""
         await asyncio.gather(*(self.cancel(job) for job in self._jobs.values()))
         if self._watches:
             # They end with the output of their processes.
@@ -249,7 +249,7 @@ class Desk:
         ]
 
     async def close(self) -> None:
-        """End the running job and remove the kept files."""
+        """End the running jobs and remove the kept files."""
         await self.jobs.close()
         self._place.cleanup()
 
@@ -274,7 +274,7 @@ class Desk:
         return JSONResponse(document)
 
     async def known(self, request: Request) -> Response:
-        """The jobs that run or whose files are kept: a page that is opened again finds its jobs among them."""
+        """Jobs that run or whose files are kept, so that a page that is opened again finds its own."""
         return JSONResponse(plain({"jobs": self.jobs.records}))
 
     async def start(self, request: Request) -> Response:

@@ -33,7 +33,7 @@ _DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class FileColumn:
-    """A column of a run's file; ``found`` if it was found by its header."""
+    """A column of a run's file, by channel; ``found`` if its header told the channel and nobody stated it."""
 
     channel: str
     name: str
@@ -44,7 +44,7 @@ class FileColumn:
 
 @dataclass(frozen=True, slots=True)
 class PageRun(RunOfSensor):
-    """A run with its file's columns and layout, and its error; if it was read, also questions and doubtful parts."""
+    """A run with its file's columns, layout and error; questions and doubtful parts, None before it is read."""
 
     columns: tuple[FileColumn, ...]
     format: Mapping[str, str | int]
@@ -55,7 +55,7 @@ class PageRun(RunOfSensor):
 
 @dataclass(frozen=True, slots=True)
 class FigureEnds:
-    """A figure with the ends of its interval."""
+    """A figure with the ends of its interval, None if they are not known."""
 
     value: float
     low: float | None
@@ -79,7 +79,7 @@ class PageFigure(FigureEnds):
 
 @dataclass(frozen=True, slots=True)
 class RunCurve:
-    """Points of a steps run."""
+    """Points of a run from which sensitivity and stiffness are taken."""
 
     sensor: str
     run: int
@@ -90,8 +90,8 @@ class RunCurve:
 
 @dataclass(frozen=True, slots=True)
 class PredictedCurve:
-    """The predicted curve up to the end of its range, with the bands of the sheet's plots: the sensitivity's about the
-    rise, the stiffness's about the force."""
+    """The predicted curve up to the end of its range, with bands, None if unknown: the sensitivity's about the rise,
+    the stiffness's about the force."""
 
     indentation_mm: tuple[float, ...]
     force_N: tuple[float, ...]
@@ -104,7 +104,7 @@ class PredictedCurve:
 
 @dataclass(frozen=True, slots=True)
 class GroupCurves:
-    """Curves of a group."""
+    """Curves of a group's runs and of its prediction, None if there are no runs or no prediction."""
 
     runs: tuple[RunCurve, ...]
     predicted: PredictedCurve | None
@@ -112,7 +112,7 @@ class GroupCurves:
 
 @dataclass(frozen=True, slots=True)
 class PageGroup:
-    """A group of runs with figures and curves; ``agreeing`` of the ``compared`` figures share a value with the band."""
+    """A group of runs; of the ``compared`` figures ``agreeing`` have an interval that meets the predicted band."""
 
     title: str
     sensors: Sequence[str]
@@ -124,7 +124,7 @@ class PageGroup:
 
 
 def page_run(run: CampaignRun, source: MeasuredFile | None, problem: str | None = None) -> PageRun:
-    """A run with the columns of its file."""
+    """A run with the columns of its file; with none if ``source`` is None, as for a file that cannot be read."""
     if source is None:
         return PageRun(*of_run(run), (), {}, problem)
     columns = tuple(_column(source, channel) for channel in source.channels)
@@ -137,7 +137,7 @@ def _column(source: MeasuredFile, channel: str) -> FileColumn:
 
 
 def page_runs(outcome: CharacterizationResult) -> tuple[PageRun, ...]:
-    """Every run of a campaign that was read: its columns, its error, the questions and the doubtful parts."""
+    """Every run of a campaign, with its columns, its error, questions and doubtful parts."""
     measured = outcome.measured
     failures = dict(measured.failures)
     doubts = {
@@ -293,7 +293,7 @@ def _checked(text: Any) -> PurePosixPath:
 
 
 def _link(source: Path, target: Path) -> None:
-    """Put a file at another place as well, without a copy if the file system can link it."""
+    """Put a file at ``target`` as well, as a link, or as a copy if the file system cannot link it."""
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
         target.hardlink_to(source)
@@ -336,14 +336,14 @@ Parameters = list[tuple[str, str]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandWords:
-    """The command that repeats a job, and the steps before it."""
+    """The command that repeats a job; ``before``: a step to do first or a note, "" for none."""
 
     command: str
     before: str
 
 
 def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> CommandWords:
-    """The command ``characterize`` that repeats the job, and the steps before it."""
+    """The command ``characterize`` that repeats the job, with a note on fields that it cannot leave out."""
     parameters: Parameters = []
     if question is not None:
         parameters.append(("design", arguments["bases"][question.base]))
@@ -372,7 +372,7 @@ def calibrate_words(
 
 
 def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
-    """Instruction to save a changed design first."""
+    """Step that saves a changed design under a name before the command."""
     assert question is not None
     changes = [("from", arguments["bases"][question.base])]
     changes += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]

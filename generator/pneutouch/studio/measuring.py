@@ -74,7 +74,7 @@ class RecognisedRuns:
 
 @dataclass(frozen=True, slots=True)
 class FittedName:
-    """A parameter that can be fitted."""
+    """A parameter that can be fitted; ``usual`` if it is unless the user chooses others."""
 
     name: str
     usual: bool
@@ -90,7 +90,7 @@ class FittableSensor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CharacterizedCampaign(CommandWords):
-    """Figures of a campaign as ``characterize`` prints them, without the folder, and as the page shows them."""
+    """Figures of a campaign, as ``characterize --json`` prints them without the folder, and for the page."""
 
     document: MeasuredCampaign
     title: str
@@ -109,7 +109,7 @@ class CharacterizedCampaign(CommandWords):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibratedSensor(CommandWords):
-    """A calibration as ``calibrate`` prints it; ``opens`` is the design with the calibration if it was saved."""
+    """A calibration as ``calibrate --json`` prints it; ``opens``: the calibrated design, if it was saved."""
 
     document: OutcomeRecord
     chart: str
@@ -210,7 +210,7 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
 
 
 def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> CharacterizedCampaign:
-    """The command ``characterize``, its sheet and files into ``folder``. Raises InputError as the command does."""
+    """Run the command ``characterize`` on the campaign; its files go into ``folder``. Raises InputError as it does."""
     with _given(arguments, folder) as given:
         _plan(given, arguments)
         outcome = run_characterize(
@@ -289,7 +289,7 @@ def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> Cal
 
 
 def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str]) -> Question | None:
-    """The calibrated design as a question; None if the page cannot open it."""
+    """The calibrated design as a question; None if the page has no such design to open."""
     named = {"calibration": outcome.record.calibration}
     if given.question is not None:
         return replace(given.question, values={**given.question.values, **named})
@@ -303,7 +303,7 @@ def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str])
 def _given(arguments: Mapping[str, Any], folder: Path) -> Iterator[_Given]:
     """Input of a job, with its files in the working folder, so that messages name files as the user does.
 
-    The messages of errors hold file and key. Raises InputError for arguments that are not valid.
+    Errors become InputError or ComputationError, with file and key in the message; so do arguments that are not valid.
     """
     library, root = Library.default(), user_folder().absolute()
     place = folder.absolute().parent / "input"
@@ -323,7 +323,7 @@ def _given(arguments: Mapping[str, Any], folder: Path) -> Iterator[_Given]:
 
 
 def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
-    """Write the campaign file if the runs came without one. Raises InputError if no runs are given."""
+    """Write the campaign file if none came with the runs. Raises InputError if no runs are given."""
     if given.planned:
         return
     runs = arguments.get("runs")
@@ -333,7 +333,7 @@ def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
 
 
 def _noted(given: _Given, words: CommandWords) -> CommandWords:
-    """Words of a command; for runs without a campaign file they add where the written one is."""
+    """The words of a command; if no campaign file was given, they add where the written one is."""
     if given.planned:
         return words
     place = f"{CAMPAIGN}, which the command needs next to the runs, is in the zip of the measured sheet"

@@ -49,7 +49,7 @@ class PageTable:
 
 @dataclass(frozen=True, slots=True)
 class FrontCurve:
-    """Trade-off front of a resin."""
+    """Trade-off front of a resin: force range over sensitivity, (n,) each."""
 
     title: str
     sensitivity_kPa_per_N: tuple[float, ...]
@@ -152,7 +152,7 @@ _CHART = "trade-off chart"
 
 
 def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSelection:
-    """Search for the target of ``values``, from its base, else ``base``. Raises InputError naming the field."""
+    """Search designs for the target ``values``; its base is ``base`` if it has none. Raises InputError at the field."""
     library, bases = CachedLibrary(Library.default().folders), arguments["bases"]
     question = Question.of({key: arguments.get(key) for key in ("base", "values")})
     with at_its_fields():
@@ -244,7 +244,7 @@ def _chart(run: SelectionRun, library: Library) -> FrontChart:
 
 
 def _graded(run: GradedSelectionRun, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
-    """Page of a search for a graded wall: a table of membranes of constant mix replaces the chart."""
+    """Answer to a target for a graded wall; a table of membranes of constant mix replaces the chart."""
     head, rows = graded_table(run)
     rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
     card = extended(

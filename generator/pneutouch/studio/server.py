@@ -97,13 +97,13 @@ class Studio:
         self._one, self._waiting = asyncio.Lock(), 0
 
     async def form(self, request: Request) -> Response:
-        """Content that the page is built from."""
+        """Form of a design and list of designs, from which the page is built."""
         form = await run_in_threadpool(design_form, self._library)
         known = {"designs": designs_of(self._bases), "first": self._first, "version": __version__}
         return JSONResponse({**plain(form), **known})
 
     async def target_form(self, request: Request) -> Response:
-        """Content that the form of a target is built from."""
+        """Form of a target."""
         return JSONResponse(plain(await run_in_threadpool(target_form, self._library, self._bases)))
 
     async def at_once(self, answer: Callable[[Question], object], request: Request) -> Response:
@@ -145,7 +145,7 @@ class Studio:
 
 
 def application(bases: dict[str, str], first: str, port: int, token: str) -> Application:
-    """The whole studio as an ASGI application that listens on ``port`` and is opened by ``token``."""
+    """The whole studio as an ASGI application for the address with ``port``, which ``token`` opens once."""
     studio, known = Studio(bases, first), page_files()
 
     async def page(request: Request) -> Response:
@@ -229,7 +229,7 @@ class Connection(H11Protocol):
         self._watch()
 
     def data_received(self, data: bytes) -> None:
-        """Take received data."""
+        """Take received data, and limit the time of the next step."""
         super().data_received(data)
         self._watch()
 
@@ -273,8 +273,8 @@ class Connection(H11Protocol):
 
 
 def without_traceback(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Keep errors of connections, such as a lack of file descriptors for one, off the terminal: the event loop tries
-    again, also, in vain, on a listener that was closed meanwhile."""
+    """Keep errors of connections, such as a lack of file descriptors, off the terminal. The event loop tries again by
+    itself, even, in vain, on a listener that was closed meanwhile."""
     if not isinstance(context.get("exception"), OSError) and "_start_serving" not in context["message"]:
         loop.default_exception_handler(context)
 

@@ -29,7 +29,7 @@ class SupersededError(Exception):
 
 
 class Solver:
-    """Sends questions to the process, one at a time. A newer question replaces the one that waits.
+    """Sends questions to one process, one at a time. A newer question replaces the one that waits.
 
     It also replaces one computed for longer than `_PATIENCE`: that process is ended, and another started.
     """
@@ -57,7 +57,7 @@ class Solver:
             self._pass_on()
 
     async def _turn(self) -> None:
-        """Wait until the question before this one has its answer. Raises SupersededError."""
+        """Wait until the process is free. Raises SupersededError if a newer question takes this one's place."""
         self._waiting = turn = asyncio.get_running_loop().create_future()
         try:
             await turn
