@@ -1,1 +1,1 @@
-"""Bodies in, bytes out: 3MF, STL, STEP and GLB, all in the print frame, the same bytes for the same input."""
+"""Files as bytes, the same for the same input: 3MF, STL, STEP, GLB, voxel slices, readers and simulator models."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 _STEPS = 32767
-"""Steps from the middle of the view to its end in each direction: whole numbers of two bytes."""
+"""Steps from the middle of the view to its end in each direction: whole numbers of two bytes hold them."""
 
 
 TILT_DEG = 26.0
@@ -34,8 +34,8 @@ class ShadedBody(NamedTuple):
     """Triangles as a picture needs them: corners in mm, unit normals and colours (0 to 1), (m, 3, 3) each.
 
     ``relief`` is the share of light and shadow in the colours: 1 for the look of a body, 0 for the colours themselves.
-    ``columns``: of a grid that closes around an axis, in rows up to a pole; else 0. First come the triangles of each
-    field's corner, the one after it and the one above that, row by row.
+    ``columns`` is that of a grid that closes around an axis, with rows up to a pole; else 0. Its first triangles, row
+    by row, join the corner of a cell, the next one around, and the one above that.
     """
 
     name: str
@@ -47,7 +47,7 @@ class ShadedBody(NamedTuple):
 
 
 def shaded(body: Body, colours: Array | None = None) -> ShadedBody:
-    """A body with smooth normals; ``colours`` (n, 3) are of its vertices, left out: its material's colour."""
+    """A body with smooth normals, in ``colours`` (n, 3) of its vertices, or (None) in its material's colour."""
     if colours is None:
         colours = np.tile(np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255, (len(body.vertices), 1))
     return ShadedBody(body.name, body.corners, corner_normals(body), colours[body.triangles])
@@ -71,7 +71,7 @@ def view_data(bodies: Sequence[ShadedBody], tilt_deg: float = TILT_DEG) -> str:
 
 
 def _parts(body: ShadedBody, middle: Array, reach: float) -> list[dict[str, Any]]:
-    """The body in pieces of as many triangles as two-byte indices hold."""
+    """The body in pieces of as many triangles as two-byte indices can number."""
     rows = np.concatenate(
         [
             np.rint((body.corners - middle) / reach * _STEPS),
@@ -166,7 +166,7 @@ def _scene(bodies: tuple[Body, ...]) -> trimesh.Scene:
 
 
 def cut_open(body: Body) -> Body:
-    """The body without the quarter towards the viewer."""
+    """The body without the quarter that faces the viewer, at x above and y below its middle."""
     from manifold3d import Manifold
 
     low, high = body.bounds

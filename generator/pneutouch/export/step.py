@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 _AT_AXIS = 1e-9
-"""Radii below which a point of a meridian lies on the axis, mm."""
+"""Radius below which a point of a meridian lies on the axis, mm."""
 
 
 def exact_solid(solid: Solid) -> TopoDS_Shape:
@@ -65,7 +65,7 @@ def exact_solid(solid: Solid) -> TopoDS_Shape:
 
 
 def _combined(operation: BRepAlgoAPI_BooleanOperation, body: TopoDS_Shape, tools: list[TopoDS_Shape]) -> TopoDS_Shape:
-    """A boolean operation on a body by several tools at once."""
+    """The result of a boolean operation on a body with several tools at once."""
     operation.SetArguments(_listed([body]))
     operation.SetTools(_listed(tools))
     operation.SetRunParallel(True)
@@ -176,7 +176,7 @@ def _place(frame: Frame) -> TopLoc_Location:
 
 
 def shifted(by: Vector) -> TopLoc_Location:
-    """A shift, mm."""
+    """The kernel's location that is shifted by ``by`` (x, y, z), mm."""
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location
 
@@ -212,7 +212,7 @@ def canonical(text: str) -> str:
 
 
 def _tidy(content: str) -> str:
-    """One line without the blanks and breaks whose places depend on how long the numbers are."""
+    """An entity on one line, its numbers rounded, without blanks, whose places depend on how long the numbers are."""
     joined = "".join(line.strip() for line in content.splitlines())
     texts = joined.split("'")
     outside = [_REAL.sub(_rounded, "".join(text.split())) for text in texts[::2]]
@@ -266,7 +266,7 @@ def step_obstacle() -> str | None:
 
 
 def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dict[str, bytes], dict[str, str]]:
-    """``name.step`` with its content (see `step`); without CadQuery instead ``name.step`` with why it is left out."""
+    """Contents by name, and reasons by name for files left out; ``name.step`` is in the latter without CadQuery."""
     file, obstacle = f"{name}.step", step_obstacle()
     return ({file: step(name, solids, offset)}, {}) if obstacle is None else ({}, {file: obstacle})
 
@@ -274,7 +274,7 @@ def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dic
 # The kernel crashes the process where an interrupt cuts it short.
 @uninterrupted()
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
-    """The solids, shifted by ``offset`` (3,), as one assembly ``name``. Raises ComputationError if the kernel fails."""
+    """The solids, shifted by ``offset`` (3,) mm, as one assembly. Raises ComputationError if the kernel fails."""
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.Interface import Interface_Static
     from OCP.Message import Message, Message_Gravity
@@ -305,7 +305,7 @@ def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
 
 
 def _assembly(name: str, solids: tuple[Solid, ...], offset: Array) -> TDocStd_Document:
-    """A document of the kernel: one part per solid, coloured as its material and named."""
+    """A document of the kernel: one named part for each solid, in its material's colour."""
     from OCP.BinXCAFDrivers import BinXCAFDrivers
     from OCP.BRep import BRep_Builder
     from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TypeOfColor

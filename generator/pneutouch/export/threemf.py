@@ -85,7 +85,7 @@ WELL_KNOWN = frozenset({"Title", "Designer", "Description", "Copyright", "Licens
 """Names of metadata that the specification defines; they have no namespace."""
 
 _LONGEST = 60_000
-"""Greatest number of bytes of one entry."""
+"""Greatest number of bytes of one metadata entry."""
 
 _ENCODED = str.maketrans({letter: f"%{ord(letter):02X}" for letter in "%&<>\"'"})
 
@@ -154,7 +154,7 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
 
 
 def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, identity: str) -> Any:
-    """A body as a mesh object with its material and metadata. Raises ComputationError if it is not closed."""
+    """A body as a mesh object, UUID ``identity``, with material and metadata. ComputationError if it is not closed."""
     mesh = model.AddMeshObject()
     mesh.SetName(body.name)
     mesh.SetUUID(identity)
@@ -167,7 +167,7 @@ def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, iden
 
 
 def content_of(wrapper: Any, model: Any) -> bytes:
-    """The file of a model, read back once. Raises ComputationError if it cannot be."""
+    """The file of a model as bytes, read back once. Raises ComputationError if it cannot be read."""
     writer = model.QueryWriter("3mf")
     writer.SetDecimalPrecision(DECIMALS)
     content = bytes(writer.WriteToBuffer())
@@ -176,7 +176,7 @@ def content_of(wrapper: Any, model: Any) -> bytes:
 
 
 def check_readable(wrapper: Any, content: bytes) -> None:
-    """Read the written file strictly: a file that readers refuse must not leave."""
+    """Read the written file strictly. Raises ComputationError for a file that readers refuse."""
     import lib3mf
 
     try:
@@ -205,7 +205,7 @@ def name_uuid(*path: str) -> str:
 
 
 def set_geometry(wrapper: Any, mesh: Any, body: Body) -> None:
-    """Hand the arrays over as C buffers: lists of structures cost eight times as much."""
+    """Hand vertices and triangles to lib3mf as C buffers: lists of structures cost eight times as much."""
     import lib3mf
 
     vertices = np.ascontiguousarray(body.vertices, np.float32)
@@ -219,7 +219,7 @@ def set_geometry(wrapper: Any, mesh: Any, body: Body) -> None:
 
 
 def facts_of(body: Body) -> dict[str, str]:
-    """Metadata of a body: a composite has no name of its own that would carry the intent."""
+    """Metadata of a body: role, material, source of the mix; a composite has no name that would carry them."""
     mix = body.material.mix
     return {"role": body.role, "material": body.material.label, **({} if mix is None else {"mix-source": mix.source})}
 

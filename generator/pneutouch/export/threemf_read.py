@@ -1,9 +1,7 @@
-"""Read a 3MF back: bodies with their materials, metadata, the recipe where there is one.
+"""Read a 3MF back: bodies with their materials, metadata, and the recipe if there is one.
 
-The package under a 3MF, opened with suspicion: a zip whose parts are counted, inflated and looked through here.
-
-What is handed on is a fresh, plain archive of exactly the parts that were checked, so no other reader can see
-anything else in the file. Nothing is extracted to disk.
+Any file may come: the parts of the zip are counted, inflated and checked here, and lib3mf gets a fresh, plain archive
+of exactly the checked parts, so that it sees nothing else of the file. Nothing is extracted to disk.
 """
 
 import ctypes
@@ -54,8 +52,9 @@ _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 def checked_package(path: Path) -> bytes:
     """The package at ``path`` as a plain archive of checked parts.
 
-    Raises InputError for what is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated,
-    of more than `MOST_PARTS` parts, or holds XML with a document type or entities.
+    Raises InputError if it is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated, has
+    more than `MOST_PARTS` parts, or holds XML with a document type, entities or too deep nesting, or too many
+    components.
     """
     content = read_bytes(path, MOST_BYTES, "3MF file")
     _check_end(content, path)
@@ -78,7 +77,7 @@ def checked_package(path: Path) -> bytes:
 
 
 def _check_end(content: bytes, path: Path) -> None:
-    """Check the archive's end record before a list of its parts is made: the list could be long."""
+    """Check the number of parts in the archive's end record before a list of them, which could be long, is made."""
     at = content.rfind(_END, max(0, len(content) - _END_SIZE - 0xFFFF))
     end = content[at : at + _END_SIZE]
     comment = int.from_bytes(end[20:22], "little")
@@ -100,7 +99,7 @@ def _check_end(content: bytes, path: Path) -> None:
 
 
 def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
-    """Content by name. Declared sizes are checked first; no more than declared is inflated, and less is refused."""
+    """Content by name. Sizes are checked before inflating; a part that inflates to another size is refused."""
     if not all(entry.filename for entry in archive.infolist()):
         raise InputError("a part without a name, which no 3MF has", file=path)
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
@@ -135,14 +134,14 @@ Name = tuple[str, str]
 
 
 class Components:
-    """References between objects, over all parts: a few of them can stand for more objects than any reader holds."""
+    """References between objects, over all parts: a few of them can stand for more objects than a reader can hold."""
 
     def __init__(self, where: str) -> None:
         self.where, self.object = where, ("", "")
         self.references: dict[Name, list[Name]] = {}
 
     def start(self, part: str, tag: str, attributes: dict[str, str]) -> None:
-        """Take note of an element of a part as it begins."""
+        """Take note of an object or a component as its element begins in a part."""
         local = tag.rsplit(":", 1)[-1]
         if local == "object":
             self.object = (part, attributes.get("id", ""))
@@ -180,7 +179,7 @@ class Components:
 
 
 def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: bool) -> None:
-    """Refuse a document type, entities and deep nesting, in any encoding; ``must`` be well-formed XML at all.
+    """Refuse a document type, entities and deep nesting, in any encoding; with ``must`` also what is not XML.
 
     Parts with other endings are looked through as well: what is no XML fails at its first bytes. ``noted`` takes note
     of the components, under the name of the part.
@@ -225,9 +224,9 @@ class StoredBody:
 
     Attributes:
         name: As stored; may be empty.
-        material: Name of the material, or of its base material; None if there is none.
+        material: Name of the material, of its base material, or its mix in words; None if there is none.
         colour: Display colour ``#RRGGBB``, or None.
-        mix: Base material to fraction, where the material is a composite.
+        mix: Base material to fraction, where the material is a composite; else empty.
         vertices: (n, 3), mm.
         triangles: (m, 3) indices.
     """
@@ -246,13 +245,13 @@ class StoredBody:
 
     @property
     def volume(self) -> float:
-        """Volume in mm3 by the divergence theorem; of a closed mesh."""
+        """Volume in mm3 by the divergence theorem, true for a closed mesh; 0 without triangles."""
         return enclosed_volume(self.vertices, self.triangles) if len(self.triangles) else 0.0
 
 
 @dataclass(frozen=True)
 class Package:
-    """Content of a 3MF; ``metadata`` has names of other namespaces as ``namespace:name``, ``recipe`` is JSON text."""
+    """Content of a 3MF; ``metadata`` names other namespaces as ``namespace:name``; ``recipe`` is JSON text or None."""
 
     path: Path
     bodies: tuple[StoredBody, ...]
@@ -330,7 +329,7 @@ def _fill(wrapper: Any, mesh: Any, what: str, target: NDArray[Any]) -> None:
 
 
 def _material(wrapper: Any, model: Any, mesh: Any) -> tuple[str | None, str | None, dict[str, float]]:
-    """Name, display colour and mix of an object's material; nothing where it has none, or a texture."""
+    """Name, display colour and mix of an object's material; None, None and {} without one that is known here."""
     import lib3mf
 
     resource, index, given = mesh.GetObjectLevelProperty()

@@ -1,6 +1,6 @@
 """Contact force from the gauge pressure of one sensor, by its table. Standard library alone.
 
-Pressures are kPa, gauge pressures unless absolute is stated; temperatures are those of the gas, degrees Celsius.
+Pressures are kPa, gauge pressures but for the ambient one, which is absolute; temperatures are the gas's, degrees C.
 """
 
 import math
@@ -10,19 +10,19 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 FORMAT = "pneutouch/reader/1"
-"""Format of the table and its version, which is raised where a reader of the one before would misread it."""
+"""Format of the table with its version, which goes up when an older reader would misread the table."""
 
 CELSIUS = 273.15
 
 NOISES = 5.0
-"""Standard deviations of the gauge's noise by which a reading is distinguished from its zero."""
+"""Multiple of the noise's standard deviation by which a reading must differ from its zero to count as different."""
 
 UNSTEADY = 0.002
 """Share of the greatest pressure rise that readings without contact may scatter by, or `NOISES` times the gauge's noise
 where that is more: our choice. The threshold of a touch follows from their scatter."""
 
 QUIET = 0.001
-"""Share of the greatest pressure rise that counts as noise at least, where a reading is below zero."""
+"""Least noise, as a share of the greatest pressure rise, against which a reading below zero is judged."""
 
 
 class Status(IntEnum):
@@ -88,7 +88,7 @@ class ForceReader:
     def tare(
         self, gauge_kPa: Sequence[float], temperature_C: float = 20.0, ambient_pressure_kPa: float | None = None
     ) -> Status:
-        """Take readings without contact as the driving pressure, and their scatter as the gauge's noise."""
+        """Take the mean of readings without contact as driving pressure, their scatter as noise; returns the status."""
         ambient_kPa = self._nominal_kPa if ambient_pressure_kPa is None else ambient_pressure_kPa
         count = len(gauge_kPa)
         self.driving_pressure_kPa = math.nan
@@ -144,9 +144,9 @@ class ForceReader:
         temperature_C: float | None = None,
         ambient_pressure_kPa: float | None = None,
     ) -> bool:
-        """Follow a slow drift of the zero; for every reading, ``seconds`` after the one before. Whether it is touched.
+        """Follow a slow drift of the zero with every reading, ``seconds`` after the one before. True if touched.
 
-        While it is, and where the pressure moves faster than a drift may, nothing is learnt.
+        The zero stays while it is touched or far below zero; else it moves no faster and no further than allowed.
         """
         ambient_kPa = self._ambient_kPa if ambient_pressure_kPa is None else ambient_pressure_kPa
         status, _, free_kPa = self._without_contact(gauge_kPa, temperature_C, ambient_kPa)
@@ -169,7 +169,7 @@ class ForceReader:
         return self.touched
 
     def _without_contact(self, gauge_kPa: float, temperature_C: float | None, ambient_kPa: float) -> _Free:
-        """The pressure that the gauge has without contact now; a status where the conditions allow no reading."""
+        """Gas content and gauge pressure without contact now; if no reading is possible, the status alone."""
         kelvin = self._kelvin if temperature_C is None else temperature_C + CELSIUS
         if math.isnan(self.driving_pressure_kPa):
             return _Free(Status.NOT_TARED)
@@ -189,7 +189,7 @@ class ForceReader:
         return _Free(self._rating(free_kPa), content, free_kPa)
 
     def _looked_up(self, row: int, part: float, at: float, rise_kPa: float, status: Status) -> ForceReading:
-        """The reading at a rise ``at`` of the table and a measured ``rise_kPa``, both kPa."""
+        """The reading at the pressure rise ``at`` in the table and the measured ``rise_kPa``, both kPa."""
         rises = [a + part * (b - a) for a, b in zip(self._rise[row], self._rise[row + 1], strict=True)]
         forces = [a + part * (b - a) for a, b in zip(self._force[row], self._force[row + 1], strict=True)]
         noise = math.sqrt(self.noise_kPa**2 + self._zero_variance)
@@ -230,7 +230,7 @@ class ForceReader:
         return low + part * (high - low)
 
     def _pressure(self, content: float, ambient_kPa: float) -> float:
-        """The driving pressure with that content, at an ambient pressure; beyond the ends by the last step."""
+        """The driving pressure with that content, at an ambient pressure; extrapolated beyond the ends."""
         contents = [v * (p + ambient_kPa) for p, v in zip(self._gas_rows, self._gas, strict=True)]
         k = min(max(bisect_right(contents, content), 1), len(contents) - 1) - 1
         share = (content - contents[k]) / (contents[k + 1] - contents[k])
@@ -238,7 +238,7 @@ class ForceReader:
 
 
 def _place(value: float, rows: Sequence[float]) -> tuple[int, float]:
-    """Place among rows of equal steps: the row below, and the share of the step beyond it."""
+    """The row below a value among equally spaced rows, and the share of the step beyond it; within the ends."""
     step = (rows[-1] - rows[0]) / (len(rows) - 1)
     place = min(max((value - rows[0]) / step, 0.0), len(rows) - 1.0)
     row = min(int(place), len(rows) - 2)

@@ -19,7 +19,7 @@ and temperature of 24 bits (drivers Linux abp2030pa and ESPHome honeywellabp2)."
 
 @dataclass(frozen=True, slots=True)
 class SketchGauge:
-    """A gauge as a sketch reads it: pressure in kPa from its output, float32 literals of C, in volts or by its bus."""
+    """A gauge as a sketch reads it: kPa = low + slope (output - at_low), float32 literals of C, in volts or by bus."""
 
     low: str
     at_low: str
@@ -30,7 +30,7 @@ class SketchGauge:
 
 
 def arduino_gauge(gauge: Gauge) -> SketchGauge | str:
-    """Data of a gauge for the sketch; or the reason why there is no sketch, in words."""
+    """The gauge as a sketch reads it; or the reason why there is no sketch, in words."""
     if gauge.is_absolute:
         return f"no sketch: the {gauge.title} is absolute, and its reading less a barometer's is the gauge pressure"
     if gauge.transfer.at_low is None or gauge.transfer.at_high is None:
@@ -53,7 +53,7 @@ TEMPLATES = HERE / "templates"
 SCHEMA = HERE / "reader.schema.json"
 
 MOST_TABLES = 8192
-"""Bytes that the tables of a header may take."""
+"""Greatest size of the tables of a header, bytes."""
 
 WORDS = {
     Status.OK: "force and uncertainty hold",
@@ -73,9 +73,9 @@ _PARTS = ("format", "grid", "gas", "box", "rating", "gauge", "zero", "conditions
 
 
 def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = None) -> dict[str, bytes]:
-    """All files of a reader but ``reader.json``, by their names; ``name`` becomes the prefix of files and of C.
+    """All files of a reader but ``reader.json``, by name; ``name`` becomes the prefix of files and of C names.
 
-    The sketch is there where it can read the gauge: see `sketch_note`.
+    A sketch is among them if it can read the gauge: see `sketch_note`.
     """
     c = c_name(name)
     header = _rendered("reader.h.j2", record, c=c, **_header(record))
@@ -99,7 +99,7 @@ def sketch_note(gauge: Gauge | None) -> str | None:
 
 
 def c_name(name: str) -> str:
-    """An identifier of C from a name: other characters become underscores, a digit in front gets a letter."""
+    """An identifier of C from a name: other characters become underscores; before a digit stands ``sensor_``."""
     plain = re.sub(r"\W", "_", name, flags=re.ASCII).lower()
     return f"sensor_{plain}" if not plain[:1].isalpha() else plain
 
@@ -172,7 +172,7 @@ def _header(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def table_bytes(record: Mapping[str, Any]) -> int:
-    """Size of the tables of the header."""
+    """Size of the tables of the header, bytes."""
     grid = record["grid"]
     rows, columns = len(grid["contact_force_N"]), len(grid["contact_force_N"][0])
     relative = grid["force_uncertainty_relative"]
@@ -181,7 +181,7 @@ def table_bytes(record: Mapping[str, Any]) -> int:
 
 
 def _half(intervals: int) -> int:
-    """The first step of a search by halves among so many intervals: a power of two."""
+    """The first step of a binary search among ``intervals`` intervals: a power of two."""
     return 1 << max((intervals - 1).bit_length() - 1, 0)
 
 

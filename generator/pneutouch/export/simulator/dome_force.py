@@ -15,16 +15,16 @@ from typing import Any
 import mujoco
 
 IN_RANGE, BEYOND_RANGE = 0.0, 1.0
-"""Values of the sensor NAME_status: beyond the range force and pressure go on straight, and are not to be trusted."""
+"""Values of the sensor NAME_status; beyond the range force and pressure are extrapolated and not to be trusted."""
 
 _SHARED = "_pneutouch_domes_1"
-"""Attribute of the module mujoco with the registry of all copies of this module, by number of its interface."""
+"""Name of mujoco's attribute for the registry that all copies of this module share; the number is its version."""
 
 _LOADERS = (
     (mujoco.MjModel, staticmethod, ("from_xml_path", "from_xml_string")),
     (mujoco.MjSpec, lambda method: method, ("compile", "recompile", "to_xml")),
 )
-"""Functions that compile a model, with the words that bind it to its class."""
+"""Classes, the function that binds a method to each, and the names of their methods that compile a model."""
 
 
 class DomeForce:
@@ -131,7 +131,7 @@ class ChainedCallback:
         self._thread = threading.local()
 
     def __call__(self, *arguments: Any) -> None:
-        """Take model and data, and for the sensors the stage."""
+        """Call the callback set before, then serve the domes; takes model, data and, of sensors, the stage."""
         # One that was set later may call this one in turn. Each time it goes on to an older one, so that it ends.
         depth = getattr(self._thread, "depth", 0)
         before = self._before[max(0, len(self._before) - 1 - depth)]
@@ -145,7 +145,7 @@ class ChainedCallback:
             self._serve(*arguments)
 
     def set(self) -> None:
-        """Put this callback in front of the one that is set."""
+        """Set this callback in MuJoCo; the one that is set is called before it."""
         current = self._get()
         if current is self:
             return
@@ -156,7 +156,7 @@ class ChainedCallback:
         self._put(self)
 
     def pause(self) -> Callable[[], None]:
-        """Take a Python callback away, whose ever it is; returns the function that sets it again."""
+        """Take away the Python callback that is set, this or another; returns a function that sets it again."""
         current = self._get()
         if current is None or hasattr(current, "restype"):  # A C function of ctypes.
             return lambda: None
@@ -179,7 +179,7 @@ class DomeRegistry:
                 setattr(owner, name, bind(self._without_callbacks(getattr(owner, name))))
 
     def _without_callbacks(self, load: Callable[..., Any]) -> Callable[..., Any]:
-        """MuJoCo steps a model while it compiles it: it has no Python object for a Python callback then, and fails."""
+        """``load`` with callbacks paused: MuJoCo steps a model as it compiles it, and has no Python object for it."""
 
         @functools.wraps(load)
         def paused(*arguments: Any, **named: Any) -> Any:

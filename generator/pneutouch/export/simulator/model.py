@@ -84,7 +84,7 @@ _TIME_STEP = 0.002
 """Time step, s: MuJoCo's default."""
 
 _INERTIA_SHARE = 0.5
-"""Inertia of the joint over greatest stiffness times time step squared. An explicit spring is stable from 0.25 on."""
+"""Inertia of the joint over greatest stiffness times time step squared; an explicit spring is stable from 0.25 on."""
 
 _GAUSS = 24
 """Points of Gauss along a piece of a face: exact to rounding on a quarter circle."""
@@ -172,7 +172,7 @@ def simulated_sensor(
     density: float,
     tables: tuple[PressTable, ...],
 ) -> SimulatedSensor:
-    """A sensor of bodies, its dome of a shape and a density in g/cm3."""
+    """A sensor of bodies and solids; its dome has a shape, a density in g/cm3 and ``tables`` of its presses."""
     rear = 1e-3 * min(float(body.bounds[0, 2]) for body in bodies)
     return SimulatedSensor(
         name,
@@ -212,7 +212,7 @@ def _moments(face: Sequence[Segment]) -> tuple[float, float, float]:
 _XML_DIGITS = 9
 
 _NOTHING = 1e-15
-"""Coordinates and moments below this (m, kg m2) are rounding."""
+"""Coordinates (m) and moments (kg m2) below this are rounding, and written as 0."""
 
 
 def add(parent: ElementTree.Element, tag: str, **attributes: str | float) -> ElementTree.Element:
@@ -222,17 +222,17 @@ def add(parent: ElementTree.Element, tag: str, **attributes: str | float) -> Ele
 
 
 def number_text(value: float) -> str:
-    """A number with nine digits."""
+    """A number as text with nine significant digits."""
     return f"{float(value):.{_XML_DIGITS}g}"
 
 
 def vector(values: Iterable[Any]) -> str:
-    """Numbers with spaces between."""
+    """Numbers as text with spaces between, those within `_NOTHING` of zero as 0."""
     return " ".join(number_text(value if abs(value) > _NOTHING else 0.0) for value in values)
 
 
 def xml_document(root: ElementTree.Element) -> bytes:
-    """A document, indented."""
+    """An XML document, indented, as UTF-8."""
     ElementTree.indent(root)
     return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 

@@ -23,12 +23,12 @@ _PER_METRE = 1000 / INCH
 
 
 def table(colours: list[tuple[int, int, int, int]]) -> Pixels:
-    """Colours as pixel values, indexed by label, for `encode`."""
+    """Colours (RGBA) as pixel values (uint32), indexed by label, for `encode`."""
     return np.array(colours, np.uint8).view(np.uint32).ravel()
 
 
 def encode(labels: Labels, colours: Pixels, dpi: tuple[int, int]) -> bytes:
-    """The PNG of a slice: ``labels`` (rows, columns) index ``colours``."""
+    """The PNG of a slice: ``labels`` (rows, columns) index ``colours``; ``dpi`` along x and y."""
     rows, columns = labels.shape
     lines = np.zeros((rows, 1 + 4 * columns), np.uint8)
     lines[:, 1:] = colours[labels].view(np.uint8)
@@ -41,12 +41,12 @@ def encode(labels: Labels, colours: Pixels, dpi: tuple[int, int]) -> bytes:
 
 
 MOST_PIXELS = 100_000_000
-"""Largest number of pixels of a slice: three times the tray of a large printer at 600 x 300 dpi; read, 400 MB."""
+"""Greatest number of pixels of a slice: three times the tray of a large printer at 600 x 300 dpi; 400 MB in memory."""
 
 
 @dataclass(frozen=True)
 class PngSlice:
-    """A slice as read: ``pixels`` (rows, columns) RGBA in one number each; ``dpi`` None if the file gives none."""
+    """A slice as read: ``pixels`` (rows, columns), RGBA in a uint32 each; ``dpi`` None if the file gives none."""
 
     pixels: Pixels
     dpi: tuple[int, int] | None

@@ -54,7 +54,7 @@ class Raster:
         return len(self.x) * x, len(self.y) * y, len(self.z) * z
 
     def window(self, low: Array, high: Array) -> tuple[slice, slice, slice]:
-        """Layers, rows and columns whose centres lie in the box between two corners (3,)."""
+        """Slices of layers, rows and columns whose centres lie in the box between two corners (3,), mm."""
         x, y, z = (_held(centres, low[k], high[k]) for k, centres in enumerate((self.x, self.y, self.z)))
         return z, y, x
 
@@ -66,7 +66,7 @@ class Raster:
 def raster(
     bodies: Sequence[SolidSection], dpi: tuple[int, int], layer_um: float, *, upright: bool = True, coarser: float = 1.0
 ) -> Raster:
-    """The raster that holds bodies: lines of the grid run through the z axis, and the lowest face is the first layer's.
+    """The raster that holds bodies: the z axis is on lines of the grid, and the first layer begins at the lowest face.
 
     ``upright`` False turns the bodies over, half a turn about x, as `pneutouch.body.Body.turned_over` does. ``coarser``
     multiplies all three pitches, for studies of the raster's error.
@@ -98,10 +98,9 @@ Share = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class ResinBlend:
-    """The resins of a body, soft one first; ``share`` is of the second, None if there is only one.
+    """The resins of a body, soft one first; ``share`` is that of the second, None if there is only one.
 
-    ``most`` is its greatest value. ``assumed`` states the basis of the share where it was neither measured nor
-    requested.
+    ``most`` is the greatest share. ``assumed`` states its basis where it was neither measured nor requested.
     """
 
     resins: tuple[str, ...]
@@ -137,7 +136,7 @@ def _even(fraction: float) -> Share:
 
 
 def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -> tuple[float, str]:
-    """Place of a digital material on a mixing curve, and the reason for it."""
+    """Fraction of a digital material by its point on a mixing curve, and the source of that. Raises InputError."""
     curve_name = f"{resins[0]}+{resins[1]}"
     if curve_name in library.paths("mixing"):
         curve: MixingCurve = library.load("mixing", curve_name)
@@ -170,7 +169,7 @@ white."""
 
 @dataclass(frozen=True)
 class VoxelBody:
-    """A body as it is jetted."""
+    """A body as it is jetted: its solid, its blend of resins, and ``inside``, its sections."""
 
     solid: Solid
     blend: ResinBlend
@@ -182,7 +181,7 @@ class VoxelBody:
 
 @dataclass(frozen=True)
 class VoxelJob:
-    """A print job on a raster. ``resins`` are all that the printer runs: they fix the colours, whatever is used."""
+    """A print job on a raster. ``resins`` are all that the printer runs: the colours follow from them."""
 
     bodies: tuple[VoxelBody, ...]
     raster: Raster
@@ -196,12 +195,12 @@ class VoxelJob:
 
     @property
     def colours(self) -> dict[str, tuple[int, int, int, int]]:
-        """The colour of each resin in use, by its place among the printer's resins: the same in every stack."""
+        """The colour of each resin in use; see `colours_of`."""
         return colours_of(self.resins, self.used)
 
 
 def colours_of(resins: Sequence[str], used: Sequence[str]) -> dict[str, tuple[int, int, int, int]]:
-    """Colours by resin; the printer's resins take the palette in the order of their names."""
+    """Colours of the ``used`` resins: the printer's resins by name, or if too many those used, take the palette."""
     # A printer of more resins than there are colours shares them out among those in use.
     order = sorted(resins if len(resins) <= len(PALETTE) else used)
     return {resin: PALETTE[order.index(resin)] for resin in used}
@@ -210,8 +209,8 @@ def colours_of(resins: Sequence[str], used: Sequence[str]) -> dict[str, tuple[in
 Item = TypeVar("Item")
 
 LEAST_REACH, MOST_REACH = 0.12, 0.4
-"""Distance in mm from a skin voxel over which its share may go, and two voxels at least: less than a wall; our
-choice."""
+"""Least and greatest distance, mm, over which the share of a skin voxel is spread; two voxels at least. Less than a
+wall: our choice."""
 
 
 def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
@@ -228,7 +227,7 @@ def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
 
 
 def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
-    """Distance in mm over which the share of a skin voxel goes if the share is ``most`` at most.
+    """Distance in mm over which the share of a skin voxel is spread if the share is ``most`` at most.
 
     Far enough that an edge, where the shares of two faces come together, is not filled beyond one.
     """
@@ -271,11 +270,11 @@ class SkinCompensation:
 
     @property
     def ahead(self) -> int:
-        """Number of layers to each side that are looked at."""
+        """Number of layers to each side that the addition to a layer depends on."""
         return 2 * self._up
 
     def layer(self, number: int) -> Singles | None:
-        """Addition in a layer, (rows, columns); it has a meaning only in the interior."""
+        """Addition in a layer, (rows, columns), valid in the interior; None if there is none."""
         return _sum(self._given(k) for k in self._around(number))
 
     def _around(self, number: int) -> range:
@@ -303,7 +302,7 @@ def _sum(layers: Iterable[Singles | None]) -> Singles | None:
 
 
 def _boxed(values: Singles, reach: tuple[int, int]) -> Singles:
-    """Sums over the box of so many rows and columns in each direction."""
+    """Sums over the box of ``reach`` rows and columns to each side of every value."""
     for axis, far in enumerate(reach):
         lines = np.moveaxis(values, axis, 0)
         total = values.copy()

@@ -1,10 +1,10 @@
 """The slices of a job: which resin lies in every voxel, layer by layer, in memory that does not grow with their number.
 
-Resins are mixed by blue noise: thresholds for which any share of the voxels below lies evenly and without pattern. Void
-and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that closes on itself, with
-distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands next
-to block, each rolled by an amount of its own, else they would show as a pattern of the block's size. NumPy and SciPy
-have no blue noise.
+A mixed voxel is stiff if its share exceeds its threshold. Thresholds are blue noise: the voxels below any share lie
+evenly and without pattern. Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) makes
+them on a periodic block, with distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine
+ranks alike. Each block is shifted by an amount of its own, else the block would show as a pattern. NumPy and SciPy have
+no blue noise.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from pneutouch.body.section import Window
 from pneutouch.export.voxels.raster import RecentLayers, SkinCompensation, VoxelBody, VoxelJob, interior, reach_for
 
 BLOCK = (48, 16, 32)
-"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction; our choice, ranked in about a
-second."""
+"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction, ranked in about a second; our
+choice."""
 
 _WIDTH = 1.5
-"""Standard deviation of the energy's Gaussian over the mean pitch: Ulichney's choice."""
+"""Standard deviation of the Gaussian that makes the energy, divided by the mean pitch: Ulichney's choice."""
 
 _REACH = 4.5
-"""Standard deviations after which the energy is nothing."""
+"""Number of standard deviations beyond which the energy of a voxel is neglected."""
 
 _START = 0.1
-"""Share of the voxels in the first pattern: Ulichney's choice."""
+"""Share of the voxels in the initial pattern: Ulichney's choice."""
 
 _SCALE = 2**40
 _TAKEN = 2**62
 
 
 class _Field:
-    """The energy of a pattern on the block, flat (n,): high where it is crowded."""
+    """The energy of a pattern of chosen voxels on the block, flat (n,): high where they are crowded."""
 
     def __init__(self, shape: tuple[int, int, int], pitch: tuple[float, float, float], seed: int) -> None:
         width = _WIDTH * float(np.prod(pitch)) ** (1 / 3)
@@ -67,11 +67,11 @@ class _Field:
         self.on[index] = not self.on[index]
 
     def void(self) -> int:
-        """The emptiest place that is not taken."""
+        """The place of least energy, not chosen: the largest void."""
         return int(self.energy.argmin())
 
     def cluster(self) -> int:
-        """The most crowded place that is taken."""
+        """The place of greatest energy among the chosen ones: the tightest cluster."""
         return int(self.energy.argmax())
 
 
@@ -102,7 +102,7 @@ def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, flo
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block is rolled by its own shifts."""
+    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block in space has its own shift."""
 
     values: Array
     seed: int = 0
@@ -142,7 +142,7 @@ def _shifts(block: int, row: Indices, column: Indices, seed: int) -> tuple[Indic
 
 @lru_cache(maxsize=2)
 def thresholds(pitch: tuple[float, float, float], seed: int) -> Thresholds:
-    """Thresholds for voxels of ``pitch`` mm along x, y, z: the middles of as many steps as the block has voxels."""
+    """Thresholds for voxels of ``pitch`` mm along x, y, z: as many different values as the block has voxels."""
     ranks = void_and_cluster(BLOCK, (pitch[2], pitch[1], pitch[0]), seed)
     values = (ranks + 0.5) / ranks.size
     values.setflags(write=False)
@@ -151,7 +151,7 @@ def thresholds(pitch: tuple[float, float, float], seed: int) -> Thresholds:
 
 @dataclass(frozen=True)
 class Cubes:
-    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube each way."""
+    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge``: voxels along the edges of a cube."""
 
     shape: tuple[int, int, int]
     edge: tuple[int, int, int]
@@ -163,7 +163,7 @@ class Cubes:
         return Cubes(shape, counts)  # type: ignore[arg-type]
 
     def empty(self) -> Array:
-        """Array of zeros, one number for every cube."""
+        """Array of zeros, one for every cube."""
         return np.zeros(tuple(-(-n // e) for n, e in zip(self.shape, self.edge, strict=True)))
 
     def add(self, totals: Array, layer: int, values: Array | Flags | Singles) -> None:
@@ -174,19 +174,19 @@ class Cubes:
 
 
 CUBE = 1.0
-"""Edge in mm of the cubes in which the dithered share is compared with the given one."""
+"""Edge, mm, of the cubes in which the realised share is compared with the given one (see `VoxelCounts`)."""
 
 FULL = 0.5
-"""Share of a cube that must lie in the body for it to count: the error of a few voxels has no meaning; our choice."""
+"""Share of a cube that must lie in the body for it to count, else a few voxels would decide; our choice."""
 
 
 @dataclass
 class VoxelCounts:
-    """Voxel counts of a body: voxels, skin voxels, the sums of the second resin's share asked for and realised.
+    """Counts of a body: voxels, skin voxels, and sums of the second resin's share requested, given and realised.
 
-    ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because
-    the interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the body's
-    voxels in a cube of `CUBE` that is `FULL` enough, of which there are ``cubes``.
+    ``given`` is what was left for the dither: the share requested, the skin's moved beneath it, less what did not fit
+    because the interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the
+    body's voxels in a cube of `CUBE` that is `FULL` enough, of which there are ``cubes``.
     """
 
     voxels: int = 0
@@ -207,7 +207,7 @@ class VoxelSlicer:
     counts: dict[str, int] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Labels]:
-        """Labels (rows, columns): 0 for the background, k for the k-th of ``job.used``."""
+        """Labels (rows, columns) of each layer: 0 for the background, k for the k-th of ``job.used``."""
         job = self.job
         used = {resin: k + 1 for k, resin in enumerate(job.used)}
         layers = [_Layers(job, body, used) for body in job.bodies]
@@ -253,13 +253,13 @@ class _Layers:
         return self._rows, self._columns
 
     def section(self, number: int) -> Flags | None:
-        """The body's voxels in the window, None beyond its layers."""
+        """The body's voxels in the window, (rows, columns); None beyond its layers."""
         if not self._levels.start <= number < self._levels.stop:
             return None
         return self.body.inside.section(self._window, float(self._raster.z[number]))
 
     def paint(self, number: int, labels: Labels) -> None:
-        """Write the body's voxels of a layer."""
+        """Write the labels of the body's voxels in a layer."""
         here = self._mixed.here(number) if self.body.blend.share is not None else self.section(number)
         if here is None:
             return
@@ -270,7 +270,7 @@ class _Layers:
             part[self._mixed.stiff(number, self.tally)] = self._labels[1]
 
     def finish(self) -> VoxelCounts:
-        """Complete the tally by its comparison in cubes, and return it."""
+        """Complete the tally by the comparison of shares in cubes, and return it."""
         if self.body.blend.share is not None:
             self._mixed.finish(self.tally)
         return self.tally
@@ -292,7 +292,7 @@ class _Mixed:
         self._given_in, self._got_in, self._voxels_in = (self._cubes.empty() for _ in range(3))
 
     def _parts_of(self, number: int) -> tuple[Flags, Singles] | None:
-        """A layer's interior, and its shares, 0 outside."""
+        """A layer's interior, and the requested shares, 0 outside the body; None beyond its layers."""
         below, here, above = self.here(number - 1), self.here(number), self.here(number + 1)
         if here is None:
             return None
@@ -310,7 +310,7 @@ class _Mixed:
         return inner, np.where(inner, np.float32(0), share)
 
     def stiff(self, number: int, tally: VoxelCounts) -> Flags:
-        """Voxels of the second resin in a layer of the body."""
+        """Voxels of the second resin in a layer of the body, which are added to ``tally``."""
         parts, here, more = self._parts(number), self.here(number), self._made_up.layer(number)
         assert parts is not None and here is not None
         inner, share = parts
@@ -327,7 +327,7 @@ class _Mixed:
         return chosen
 
     def finish(self, tally: VoxelCounts) -> None:
-        """Put the greatest difference of the cubes that are full enough into the tally."""
+        """Put the greatest difference in cubes that are full enough, and the number of these, into the tally."""
         held = self._voxels_in >= FULL * np.prod(self._cubes.edge)
         tally.cubes = int(np.count_nonzero(held))
         if tally.cubes:

@@ -30,16 +30,16 @@ METHOD = (
 )
 
 SHORT = 1e-3
-"""Difference of fractions over a body beyond which a warning says that the request is not met."""
+"""Difference of fractions over a body above which a warning says that the request is not met."""
 
 
 def slice_name(prefix: str, number: int) -> str:
-    """Name of a slice: no zeros in front, as the utility's own files."""
+    """Name of a slice: the number without leading zeros, as in the files of the vendor's utility."""
     return f"{prefix}{number}.png"
 
 
 def whole_hash(hashes: Sequence[str]) -> str:
-    """SHA-256 of the slices' hashes, one per line, in order."""
+    """SHA-256 of a text that holds the slices' hashes in order, one on each line."""
     return hashlib.sha256("".join(f"{one}\n" for one in hashes).encode()).hexdigest()
 
 
@@ -139,7 +139,7 @@ _NEEDED: dict[str, type | tuple[type, ...]] = {
 
 @dataclass(frozen=True)
 class VoxelStack:
-    """A stack that keeps every rule. ``counts`` are its voxels by resin, counted in the slices."""
+    """A stack as read and checked. ``counts`` are its voxels by resin, counted in the slices."""
 
     folder: Path
     manifest: dict[str, Any]
@@ -149,7 +149,7 @@ class VoxelStack:
 
     @property
     def colours(self) -> Pixels:
-        """Pixels of the labels: the background, then the resins as the manifest lists them."""
+        """Pixel values by label: the background, then the resins as the manifest lists them."""
         return _colours(self.manifest)
 
     @property
@@ -259,7 +259,7 @@ def _slices(folder: Path, manifest: dict[str, Any]) -> Iterator[Labels]:
 
 
 def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
-    """A slice as labels. Raises InputError for another size, pitch or colour."""
+    """The content of a slice as labels. Raises InputError for another size, pitch or colour than the manifest's."""
     read = decode(content, where)
     rows, columns = read.pixels.shape
     if [columns, rows] != manifest["pixels"]:
