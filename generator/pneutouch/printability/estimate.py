@@ -1,6 +1,6 @@
-"""Estimates of a print: resin, support, layers and time, each with its assumption.
+"""Estimates of a print for planning: resin, support, layers and time, each with its assumption.
 
-Estimates for planning, from the same cubes that the rules look at; a slicer is more exact.
+They use the same cubes as the rules; a slicer is more exact.
 """
 
 import math
@@ -62,7 +62,7 @@ def _job(
     seconds: float | None,
     notes: list[str],
 ) -> JobEstimate:
-    """The estimate of a job, its support in mm3."""
+    """The record of a job's estimates; ``support`` is in mm3."""
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     resins = sorted(set[str]().union(*(item.resins_mL for item in items)))
     return JobEstimate(
@@ -92,7 +92,7 @@ def _item(part: PrintPart) -> ItemEstimate:
 
 
 def _support(job: PrintJob) -> tuple[float, str]:
-    """Support in mm3, and how it was found."""
+    """Volume of support in mm3, and the way in which it was found, in words."""
     voxels = job.voxels
     cubes = f"cubes of {voxels.pitch:.2f} mm"
     if job.printer.process == "polyjet":
@@ -106,7 +106,7 @@ def _support(job: PrintJob) -> tuple[float, str]:
 
 
 def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
-    """Time in s, and its basis."""
+    """Time in s, and its basis in words; None if the printer's profile does not give enough."""
     item = job.parts[0].item
     layer = item.mode.layer_seconds
     if item.printer.process == "polyjet":

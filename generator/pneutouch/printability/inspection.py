@@ -13,11 +13,11 @@ from pneutouch.units import UM
 
 _SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
 _FINER = 10.0
-"""Factor by which the mesh that stands for the exact solid is finer."""
+"""Factor by which the mesh that stands for the exact solid is finer than the one inspected."""
 _SLIVER = 1.0
 """Least angle of a triangle in degrees below which slicers and solvers lose precision (own, unverified)."""
 _MANY = 0.1
-"""Share of slivers that is worth a finding (own, unverified)."""
+"""Share of slivers above which there is a finding (own, unverified)."""
 
 
 class Meshable(Protocol):
@@ -30,8 +30,8 @@ class Meshable(Protocol):
 def inspect(body: Body, solid: Meshable | None = None, tolerance: float = 0.016) -> list[Finding]:
     """Self-intersections, topology, sliver triangles, and the distance in both directions from a ten times finer mesh.
 
-    ``tolerance`` (mm) is what the body was meshed to. The distance needs the exact solid. Takes seconds.
-    Raises InputError if pymeshlab is not installed.
+    ``tolerance`` (mm) is that of the body's mesh. The distance is measured only with ``solid``. Takes seconds. Raises
+    InputError if pymeshlab is not installed.
     """
     try:
         lab: Any = importlib.import_module("pymeshlab")

@@ -42,8 +42,8 @@ RULES: dict[str, Rule] = {
 def check(subject: PrintSubject, sensor_context: SensorContext | None = None) -> list[Finding]:
     """All findings, errors first.
 
-    Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving, layers, mixing curve) and on casting report nothing without ``sensor_context``.
+    Bodies whose mesh bounds no solid get only the findings on mesh, envelope and resins. Rules on the sensor's working
+    (driving, layers, glue, freedom, mixing curve) and on casting report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)
@@ -68,7 +68,7 @@ _HINTS = {
 """Remedies in the design for findings of the printing rules on parts of a mould."""
 
 _LEFT_TO_RAYS = ("edges", "mesh")
-"""Printing rules of which only errors count for a mould: its edges close, and `mould` measures its meshes."""
+"""Printing rules of which only errors count for a mould: it has sharp edges, and rays measure its meshes."""
 
 
 def mould_subject(mould: MouldAssembly) -> PrintSubject:
@@ -89,7 +89,7 @@ def check_mould(mould: MouldAssembly) -> list[Finding]:
 
 
 def refuse(findings: Iterable[Finding], file: str | PathLike[str], key: str | None = None, value: Any = None) -> None:
-    """Raise RuleBrokenError with all findings that are errors, where there are any; ``key`` is the key that decides."""
+    """Raise RuleBrokenError with all findings that are errors, if any; ``key`` names the input that decides."""
     broken = [
         RuleBrokenError(f"{f.rule}: {f.body}: {f.message}", file=file, key=key, value=value, remedy=f.fix)
         for f in findings

@@ -29,7 +29,7 @@ Point3 = tuple[float, float, float]
 
 
 class ExactShape(Protocol):
-    """An exact shape. Its attributes may be anything that reads as such: fields, properties, cached ones."""
+    """An exact shape of a body. Its attributes may be fields or properties."""
 
     @property
     def name(self) -> str:
@@ -47,11 +47,10 @@ class ExactShape(Protocol):
 class PrintItem:
     """One body as it will be printed, in the design frame (mm).
 
-    ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with the
-    same ``job`` are printed together, standing to one another as in the design frame; "" is a job of its own.
-    ``sensing`` selects the (n, 3) surface points that must not be matte. ``hints`` states, by the name of a rule, the
-    change of the design that would fix its finding. ``insert`` is a body that this one is cast around: it fills its
-    openings.
+    ``solid`` is its exact shape, if there is one. ``up`` is the build direction in the body's frame. Items with the
+    same ``job`` are printed together, placed as in the design frame; "" is a job of its own. ``sensing`` selects the
+    points, of (n, 3) on the surface, that must not be matte. ``hints`` states, by the name of a rule, the change of the
+    design that would fix its finding. ``insert`` is a body around which this one is cast: it fills its openings.
     """
 
     body: Body
@@ -77,7 +76,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class PrintSubject:
-    """The items that are made for one design."""
+    """Items to be checked together, the joints that they must have, and a name."""
 
     items: tuple[PrintItem, ...]
     joints: tuple[Joint, ...] = ()

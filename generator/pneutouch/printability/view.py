@@ -1,4 +1,4 @@
-"""A subject measured: each part and each job once, when a rule requires it."""
+"""A subject measured: every measurement of a part or a job is made once, when a rule requires it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class WettedSurface(NamedTuple):
 
 
 class GluedSeat(NamedTuple):
-    """Name of the glue of a seat, and the surfaces of membrane and connector."""
+    """Name of the glue of a seat, and the kinds of surface of membrane and connector."""
 
     glue: str
     membrane: GlueSurface
@@ -45,12 +45,12 @@ class GluedSeat(NamedTuple):
 
 @dataclass(frozen=True)
 class SensorContext:
-    """Data for the rules on the sensor's working: its prediction, the mechanics' view of it, and its rating.
+    """Data for the rules on the sensor's working: its prediction, the sensor as the mechanics take it, its rating.
 
-    ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated`` if it is a printed sensor.
-    ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
-    against. ``glued``: what joins membrane and connector, None if the seat or the design leaves it open. ``curves``:
-    the sensor by every mixing curve of its mix.
+    ``membrane`` is the name of the item that is the sensor's wall; ``calibrated``: True if the sensor exists already.
+    ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: surfaces that a cast membrane
+    cures against. ``glued``: glue of membrane and connector, None if none is named or chosen. ``curves``: the sensor by
+    every mixing curve of its mix.
     """
 
     prediction: SensorPrediction
@@ -65,12 +65,12 @@ class SensorContext:
 
 
 NARROW = 3.0
-"""Up to this width (mm) a hole's length counts where support has to come out of it (our estimate, unverified)."""
+"""With PolyJet, holes up to this width (mm) are examined: support has to come out (our estimate, unverified)."""
 
 
 @dataclass(frozen=True)
 class PrintPart:
-    """An item with its measurements."""
+    """An item with the measurements of its body."""
 
     item: PrintItem
 
@@ -86,7 +86,7 @@ class PrintPart:
 
     @cached_property
     def read(self) -> Body:
-        """The body as a file reader sees it."""
+        """The body as a file reader sees it: corners rounded to 32-bit floats and merged."""
         return self.item.body.welded()
 
     @cached_property
@@ -96,12 +96,12 @@ class PrintPart:
 
     @cached_property
     def sound(self) -> bool:
-        """True if the mesh bounds a solid, without which nothing else can be measured on it."""
+        """True if the mesh bounds a solid; only then can the rest be measured."""
         return self.item.body.is_closed() and not self.manifold.is_empty() and self.manifold.volume() > 0
 
     @cached_property
     def surface(self) -> SurfaceMesh:
-        """Mesh of the manifold, with the face numbers that its rays return."""
+        """Mesh of the manifold, whose faces have the numbers that its rays return."""
         return SurfaceMesh(*mesh_of(self.manifold))
 
     @cached_property
@@ -111,7 +111,7 @@ class PrintPart:
 
     @property
     def _limits(self) -> dict[Side, float]:
-        """The longest chords that any rule requires, mm."""
+        """Greatest length of a chord that any rule needs, by side, mm."""
         least, kind = self.item.printer.smallest, self.item.body.material.kind
         emboss = 1.5 * least.emboss_mm.recommended
         inside = max(least.wall(kind).recommended, least.pin(kind).recommended, emboss)
@@ -122,7 +122,7 @@ class PrintPart:
 
     @cached_property
     def chords(self) -> dict[Side, Chords]:
-        """Thicknesses and clearances as far as the printer's limits reach."""
+        """Thicknesses (inside) and clearances (outside) up to the greatest limit of the printer."""
         return chords(self.manifold, self.surface, self.samples, max(self._limits.values()))
 
     @cached_property
@@ -141,7 +141,7 @@ class PrintPart:
         return bool(insert.distance(np.array([place.where]))[0] <= 0.5 * place.size + self.surface.chord_error[0])
 
     def slack(self, size: float, turn: float) -> float:
-        """Possible error of a measured size (mm), mm, between curves whose faces turn by ``turn`` (radians).
+        """Possible error, mm, of a size (mm) measured between curves whose faces turn by ``turn`` (radians).
 
         A chord may miss the axis by half that turn, and without the exact solid the mesh may be off as well.
         """
@@ -149,7 +149,7 @@ class PrintPart:
         return chord if self.item.solid is not None else chord + 2 * self.surface.chord_error[0]
 
     def limit(self, name: str) -> FeatureSize:
-        """A limit of the printer for this part's kind of material: wall, pin, hole, channel, gap or emboss."""
+        """The printer's limit ``name`` (wall, pin, hole, channel, gap or emboss) for this part's kind of material."""
         smallest, kind = self.item.printer.smallest, self.item.body.material.kind
         if name in ("wall", "pin"):
             return smallest.wall(kind) if name == "wall" else smallest.pin(kind)
@@ -158,7 +158,7 @@ class PrintPart:
 
 @dataclass(frozen=True)
 class PrintJob:
-    """Parts printed together, standing to one another as in the design frame."""
+    """Parts printed together, placed to one another as in the design frame."""
 
     name: str
     parts: tuple[PrintPart, ...]
@@ -181,7 +181,7 @@ class PrintJob:
 
     @cached_property
     def union(self) -> Any:
-        """All parts as one manifold3d solid."""
+        """All parts joined to one manifold3d solid."""
         from manifold3d import Manifold, OpType
 
         if len(self.parts) == 1:
@@ -195,7 +195,7 @@ class PrintJob:
 
     @cached_property
     def pockets(self) -> list[Pocket]:
-        """Hollows behind a narrow opening."""
+        """Hollows behind a narrow opening, and closed ones."""
         return pockets(self.voxels, self.balls)
 
     @cached_property
@@ -205,12 +205,12 @@ class PrintJob:
 
     @cached_property
     def hidden(self) -> Flags:
-        """Empty cubes that no straight jet reaches."""
+        """Empty cubes that no straight jet from outside reaches."""
         return unseen(self.voxels, self.balls, seen(self.voxels))
 
     @cached_property
     def hollows(self) -> list[Hollow]:
-        """Closed hollows of each part, and those that the parts close together."""
+        """Closed hollows of each part, and those that several parts enclose."""
         parts_shells = [shell for part in self.parts for shell in voids(part.manifold, part.name)]
         if len(self.parts) == 1:
             return parts_shells
@@ -235,14 +235,14 @@ class PrintJob:
 
 @dataclass(frozen=True)
 class PrintView:
-    """A subject with its parts and jobs, and the sensor's context where there is one."""
+    """A subject with its parts and jobs, and the context of its sensor or None."""
 
     subject: PrintSubject
     sensor: SensorContext | None = None
 
     @cached_property
     def parts(self) -> tuple[PrintPart, ...]:
-        """Parts, one for each body."""
+        """Parts of the subject, one for each item."""
         return tuple(PrintPart(item) for item in self.subject.items)
 
     @cached_property
@@ -259,5 +259,5 @@ class PrintView:
         return tuple(PrintJob(name or parts[0].name, tuple(parts)) for (name, _), parts in jobs.items())
 
     def part(self, name: str) -> PrintPart | None:
-        """A part by its name."""
+        """The part of a name; None if there is none."""
         return next((part for part in self.parts if part.name == name), None)

@@ -1,6 +1,6 @@
 """Hollows that support has to come out of: the spaces behind a neck, and those that no straight jet reaches.
 
-Parts in cubes, for spaces that rays alone do not show, such as those behind a neck or under an overhang.
+Parts are filled with cubes, which show spaces that rays alone do not, such as those behind a neck or under an overhang.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from pneutouch.printability.measure.joined import distances, grown, largest_piec
 from pneutouch.printability.subject import Point3
 
 PITCH = 0.25
-"""Edge of a cube, mm, on parts small enough."""
+"""Edge of a cube, mm, for parts small enough (see `MOST`)."""
 
 MOST = 300_000
 """Greatest number of cubes of a model; a larger part gets larger cubes."""
@@ -58,7 +58,7 @@ def build_frame(up: Array) -> Array:
 
 
 def fill(parts: list[Array], frame: Array, most: int = MOST) -> PartVoxels:
-    """Cubes whose centres lie in the parts, given by their triangles' corners (m, 3, 3) in the design frame."""
+    """Parts, each by its triangles' corners (m, 3, 3) in the design frame, in cubes: those whose centres lie inside."""
     turned = [corners @ frame.T for corners in parts]
     low = np.min([corners.min(axis=(0, 1)) for corners in turned], axis=0)
     size = np.max([corners.max(axis=(0, 1)) for corners in turned], axis=0) - low
@@ -72,7 +72,7 @@ def fill(parts: list[Array], frame: Array, most: int = MOST) -> PartVoxels:
 
 
 def _filled(corners: Array, shape: tuple[int, ...]) -> Flags:
-    """Cubes with their centres at whole numbers that lie inside, by counting the crossings below each."""
+    """Cubes, centres at whole numbers, that lie inside the triangles: crossings below each centre are counted."""
     a, b, c = np.moveaxis(corners, 1, 0)
     (ab_x, ab_y, ab_z), (ac_x, ac_y, ac_z) = (b - a).T, (c - a).T
     twice = ab_x * ac_y - ac_x * ab_y
@@ -101,7 +101,7 @@ NARROW = 0.7
 """Share of a hollow's width below which its opening is a neck."""
 
 _STEPS = 8
-"""Number of opening widths tried at first; each find is then narrowed down."""
+"""Number of opening widths tried at first; the width of each neck that is found is then narrowed down."""
 
 _HALVINGS = 3
 
@@ -115,8 +115,8 @@ _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
 @dataclass(frozen=True)
 class Pocket:
-    """A hollow behind a neck: greatest ball through the opening and inside, both as diameters in mm; ``volume`` in mm3,
-    ``depth`` its longest side along the axes, mm; ``where`` its middle, ``region`` its cubes."""
+    """A hollow behind a neck: ``opening`` and ``width``, diameters of the largest balls in the neck and inside, mm;
+    ``where``, centre of the inner ball; ``volume``, mm3; ``depth``, longest side, mm; ``region``, its cubes."""
 
     opening: float
     width: float
@@ -171,7 +171,7 @@ def balls(voxels: PartVoxels) -> Array:
 
 
 def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
-    """Radius of the opening of a piece that is open at ``low`` and closed at ``high``, mm."""
+    """Radius of the neck, mm, of a piece that is connected to the outside at ``low`` and cut off at ``high``."""
     seed = np.unravel_index(int(np.where(piece, radius, -1.0).argmax()), radius.shape)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -183,7 +183,7 @@ def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
 
 
 def _grown(voxels: PartVoxels, piece: Flags, by: float) -> Flags:
-    """The piece with the empty cubes around it up to a distance, mm."""
+    """The piece with the empty cubes around it up to the distance ``by``, mm."""
     away = distances(~piece) * voxels.pitch
     return np.asarray((away <= by + 0.5 * voxels.pitch) & (voxels.label == 0))
 
@@ -211,7 +211,7 @@ def seen(voxels: PartVoxels) -> Flags:
 
 
 def _sweep(empty: Flags, reached: Flags, tilt: tuple[float, float]) -> None:
-    """Mark what parallel lines reach that come in through the border and stop at the first full cube."""
+    """Mark the cubes that parallel lines reach that enter through the border and stop at the first full cube."""
     lit = np.ones(empty.shape[1:], bool)
     shifts = np.rint(np.outer(np.arange(len(empty)), tilt)).astype(np.int64)
     before = np.zeros(2, dtype=np.int64)
@@ -223,7 +223,7 @@ def _sweep(empty: Flags, reached: Flags, tilt: tuple[float, float]) -> None:
 
 
 def _shifted(lit: Flags, by: Any) -> Flags:
-    """The layer moved by whole cubes; lines that come in from the side are lit."""
+    """The lit cells of a layer moved by whole cubes; cells that enter from the side are lit."""
     if not by.any():
         return lit
     result = np.ones_like(lit)

@@ -1,7 +1,7 @@
 """Thicknesses and clearances: lines from face to opposite face, and the size of the feature that they cross.
 
 From points all over the surface a line is cast along the normal, into the body and out of it. Where it ends on a face
-that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
+that looks back, within 30 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
 then show whether the place is thin in one direction (a wall, a gap) or in two (a pin, a hole), and lines along the
 flank how high the flank is (a ridge or a groove on a face).
 """
@@ -18,7 +18,7 @@ from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.surface import SurfaceMesh, SurfaceSamples
 
 _SELF = 1e-7
-"""A hit this near the middle of a line (mm) is the surface that its middle lies on."""
+"""A hit this near the middle of a line (mm) is on the surface on which its middle lies."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Neighbours:
 
 
 def neighbours(manifold: Any, middles: Array, directions: Array, reach: float) -> Neighbours:
-    """Cast lines through ``middles`` (n, 3), from ``reach`` mm before along unit ``directions`` (n, 3) to as far past.
+    """Cast lines through ``middles`` (n, 3) along unit ``directions`` (n, 3), from ``reach`` mm before to as far past.
 
-    ``manifold`` is manifold3d's; its hits come in order along the line.
+    ``manifold`` is a solid of manifold3d, whose hits come in order along the line.
     """
     cast = manifold.ray_cast
     count = len(middles)
@@ -61,7 +61,7 @@ def neighbours(manifold: Any, middles: Array, directions: Array, reach: float) -
 
 
 def first_hits(manifold: Any, starts: Array, directions: Array, reach: float) -> Neighbours:
-    """The first hit of each ray, columns [nothing, hit] as in `Neighbours`."""
+    """The first hit of each ray from ``starts`` (n, 3), in column 1; column 0 is as for no hit."""
     cast = manifold.ray_cast
     count = len(starts)
     distances, faces = np.full((count, 2), np.inf), np.full((count, 2), -1, dtype=np.int64)
@@ -77,13 +77,13 @@ Side = Literal["inside", "outside"]
 
 _OPPOSING = -np.cos(np.radians(30.0))
 _ACROSS = -0.6
-"""Cosine between the normals at both ends of a line that counts as across: faces of a corner do not."""
+"""Greatest cosine between the normals at both ends of a line that counts as across: faces of a corner do not."""
 _LINES = 6
 """Lines across the middle, 30 degrees apart: one is within 15 of the narrow direction, which it overstates by 3.5 %."""
 FLANK = 1.0
 """A flank lower than this (mm) belongs to a ridge or groove on a face (own, unverified)."""
 _SQUARE = 0.8
-"""Least cosine between a flank's direction and the normals of the faces that end it: no line is square to two walls."""
+"""Least cosine between a flank's direction and the normals of the faces that end it; else they do not count."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,8 @@ class Chords:
     """Lines of one side from ``start`` (n, 3) along unit ``direction`` (n, 3) over ``length`` (n,), mm.
 
     ``near`` and ``far`` are the faces at both ends, ``area`` the surface each start stands for, mm2. After `described`,
-    ``second`` is the narrowest width across the middle (inf where the place is wide) between the faces ``sides`` (n,
-    2), ``axis`` the direction along the place, ``flank`` the height of the flank (inf where it is no flank).
+    ``second`` is the narrowest width across the middle, mm (inf if wide), between the faces ``sides`` (n, 2), ``axis``
+    the direction along the place, ``flank`` the height of the flank, mm (inf where it is no flank).
     """
 
     start: Array
@@ -111,12 +111,12 @@ class Chords:
 
     @property
     def middle(self) -> Array:
-        """Middles, (n, 3)."""
+        """Middles of the lines, (n, 3), mm."""
         return self.start + 0.5 * self.length[:, None] * self.direction
 
     @property
     def end(self) -> Array:
-        """Far ends, (n, 3)."""
+        """Far ends, (n, 3), mm."""
         return self.start + self.length[:, None] * self.direction
 
     def take(self, rows: NDArray[Any]) -> Chords:
@@ -125,7 +125,7 @@ class Chords:
 
 
 def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: float) -> dict[Side, Chords]:
-    """Chords of both sides no longer than ``reach`` mm. ``surface`` is the manifold's own mesh."""
+    """Chords up to ``reach`` mm long, inside the body and outside. ``surface`` is the manifold's own mesh."""
     # The smooth surface's normals: those of flat faces miss the axis of a round pin or hole.
     normals = surface.smooth_normals(samples.faces, samples.points)
     chords = neighbours(manifold, samples.points, -normals, reach)
@@ -225,7 +225,7 @@ def continues(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Flags:
 
 
 def _tangents(directions: Array) -> tuple[Array, Array]:
-    """Two unit vectors square to each direction and to each other."""
+    """Two unit vectors (n, 3) perpendicular to each direction and to each other."""
     least = np.abs(directions).argmin(axis=1)
     u = np.cross(directions, np.eye(3)[least])
     u /= np.linalg.norm(u, axis=1)[:, None]
@@ -233,7 +233,7 @@ def _tangents(directions: Array) -> tuple[Array, Array]:
 
 
 def refined(chords: Chords, distance: Any) -> Array:
-    """Lengths (n,) from exact surface to exact surface, ``distance`` being the solid's.
+    """Lengths (n,), mm, from exact surface to exact surface; ``distance`` is the method of the exact solid.
 
     An end moves along the chord, outwards, inwards or not at all, to where it is nearest to the exact surface. The mesh
     leaves a circle by its tolerance on both sides, so that a bore measured from flat to flat is that much too narrow.

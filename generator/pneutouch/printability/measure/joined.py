@@ -17,7 +17,7 @@ from pneutouch.printability.subject import Point3
 
 
 def components(count: int, one: Indices, other: Indices) -> Indices:
-    """Component of each of ``count`` nodes, (count,), by first nodes; edges join nodes ``one`` and ``other`` (n,)."""
+    """Component of each of ``count`` nodes, (count,), numbered by first node; edges join ``one`` and ``other`` (n,)."""
     # Each node points to one of its component that is no later; edges hook the pointers together, which then shorten.
     first = np.arange(count)
     while True:
@@ -33,7 +33,7 @@ def components(count: int, one: Indices, other: Indices) -> Indices:
 
 
 def outside(space: Flags) -> Flags:
-    """The pieces of a space in cubes (i, j, k) that reach the border of the model, joined over faces of the cubes."""
+    """The pieces of a space in cubes (i, j, k) that reach the border of the grid; cubes join over their faces."""
     pieces = _Pieces(space)
     reached = np.zeros(pieces.count, bool)
     for face in (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1], np.s_[:, :, 0], np.s_[:, :, -1]):
@@ -42,7 +42,7 @@ def outside(space: Flags) -> Flags:
 
 
 def largest_pieces(space: Flags, most: int = 10) -> list[Flags]:
-    """Pieces of more than one cube, joined over faces of the cubes, by size from the largest; at most ``most``."""
+    """The largest pieces of more than one cube, at most ``most``, largest first; cubes join over their faces."""
     pieces = _Pieces(space)
     label = pieces.piece[pieces.number]
     size = np.bincount(label[space], minlength=pieces.count)
@@ -61,9 +61,9 @@ def grown(space: Flags, axes: tuple[int, ...] = (0, 1, 2)) -> Flags:
 
 
 class _Pieces:
-    """The pieces of a space: ``number`` (i, j, k) of the column run of each of its cubes, ``piece`` of each run.
+    """The pieces of a space: ``number`` (i, j, k) of the run of each of its cubes, and ``piece`` of each run.
 
-    A run is a row of cubes along the last axis; there are far fewer runs than cubes.
+    A run is a row of cubes of the space along the last axis; there are far fewer runs than cubes.
     """
 
     def __init__(self, space: Flags) -> None:
@@ -102,7 +102,7 @@ def distances(space: Flags) -> Array:
 
 
 def _along_last(space: Flags, most: int, kind: Any) -> NDArray[Any]:
-    """Square of the distance from the nearest cube along the last axis outside the space; ``most`` without one."""
+    """Square of the distance to the nearest cube outside the space along the last axis; ``most`` without one."""
     n = space.shape[2]
     place = np.arange(n, dtype=kind)
     before = np.maximum.accumulate(np.where(space, kind(-n), place), axis=2)
@@ -134,12 +134,12 @@ def _widened(square: NDArray[Any], axis: int) -> NDArray[Any]:
 
 
 _NOTHING = 1e-6
-"""Volume in mm3 below which a shell is rounding."""
+"""Volume in mm3 below which a shell is due to rounding."""
 
 
 @dataclass(frozen=True)
 class Hollow:
-    """A hollow without an opening: ``volume`` in mm3, ``bounds`` (2, 3) in mm, the ``body`` it lies in."""
+    """A closed hollow: ``volume`` in mm3, ``bounds`` (2, 3) in mm, and ``body``, the name of the one it lies in."""
 
     body: str
     volume: float
@@ -147,7 +147,7 @@ class Hollow:
 
     @property
     def where(self) -> Point3:
-        """Middle of its box."""
+        """Middle of its bounding box, mm."""
         x, y, z = (float(value) for value in self.bounds.mean(axis=0))
         return x, y, z
 
@@ -157,7 +157,7 @@ class Hollow:
 
 
 def voids(manifold: Any, body: str) -> list[Hollow]:
-    """Hollows of a manifold3d solid, smallest first."""
+    """Hollows of a manifold3d solid, smallest first; ``body`` is its name."""
     hollows = []
     for shell in manifold.decompose():
         volume = float(shell.volume())

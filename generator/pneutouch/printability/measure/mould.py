@@ -18,7 +18,7 @@ from pneutouch.parts.mould.size import MouldSize
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 
 LEAVES = {"mould-cap": DOWN, "mould-ring": DOWN, "mould-core": UP}
-"""Direction in which the silicone leaves each part that forms it: cap and ring are lifted off, the core is drawn."""
+"""Direction in which silicone leaves each part that shapes it: cap and ring are lifted off, the core is drawn."""
 
 _GRID = 3
 """Points on each triangle, see `Body.surface_points`."""
@@ -27,10 +27,10 @@ _REACH = 0.5
 """Distance in mm by which the window of the void reaches past the flange, within `parts.mould.size.LAND`."""
 
 _SIDES = 256
-"""Sides of the window that the void is taken from; it lies in the ring, clear of the gap at the ring's outside."""
+"""Sides of the prism from which the void is taken; it lies in the ring, clear of the gap at the ring's outside."""
 
 _ROUNDING = 1e-9
-"""Volume in mm3 that faces which touch may seem to share."""
+"""Volume in mm3, from rounding, that faces which touch may seem to share."""
 
 _MOST_POINTS = 3000
 """Greatest number of points whose rays are cast for each part."""
@@ -38,7 +38,7 @@ _MOST_POINTS = 3000
 
 @dataclass(frozen=True, slots=True)
 class CavityMatch:
-    """The closed mould's void against the membrane at the mould's size, mm3, and the area of its surface, mm2."""
+    """Volumes, mm3: the void of the closed mould, the membrane, what either lacks; and the membrane's area, mm2."""
 
     void: float
     membrane: float
@@ -48,13 +48,13 @@ class CavityMatch:
 
     @property
     def offset(self) -> float:
-        """Mean distance in mm between both surfaces: what either has more, over the surface."""
+        """Mean distance between both surfaces, mm: volumes that either has more, divided by the area."""
         return (self.missing + self.extra) / self.area
 
 
 @dataclass(frozen=True, slots=True)
 class UndercutPlace:
-    """A point of a part that the silicone cannot leave along its draw."""
+    """A point of a part, mm, from which the silicone cannot leave along its draw."""
 
     part: str
     where: tuple[float, float, float]
@@ -74,8 +74,8 @@ def overlaps(closed: Sequence[Body]) -> dict[tuple[str, str], float]:
 
 
 def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> CavityMatch:
-    """Volumes in which the first cavity of the closed mould, its channels plugged, and the membrane differ: what the
-    cavity lacks and what it has in excess."""
+    """Comparison of the first cavity of the closed mould, its channels plugged, with the membrane; mesh ``tolerance``
+    in mm."""
     from manifold3d import Manifold, OpType
 
     plugs = [manifold_of(*tool.mesh(tolerance)) for tool in channels(size)]
@@ -94,10 +94,10 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
 
 
 def undercuts(size: MouldSize, bodies: Sequence[Body], tolerance: float) -> list[UndercutPlace]:
-    """Places where a part of the first cavity holds the silicone back, places by rays along the draw.
+    """Places where a part of the first cavity holds the silicone back, found by rays along the draw.
 
-    A ray starts ``tolerance`` mm off each point of the faces that form the silicone and runs as the silicone
-    leaves the part; what meets the part again is an undercut.
+    A ray starts ``tolerance`` mm off each point of the faces that form the silicone and runs as the silicone leaves the
+    part; if it meets the part again, the point is an undercut.
     """
     places: list[UndercutPlace] = []
     for body in bodies:

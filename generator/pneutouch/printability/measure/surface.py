@@ -10,24 +10,24 @@ from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.joined import components
 
 CREASE = np.radians(40.0)
-"""Turn above which an edge is a drawn one; below, edges approximate a curve: nine sides and more count as round."""
+"""Turn from which on an edge is a drawn one; below, edges approximate a curve: nine sides and more count as round."""
 
 _OCTAGON = np.radians(46.0)
 _EQUAL = 0.05
-"""Edges that turn no more than a regular octagon's approximate a curve if the faces on both sides have one width, to
-this share: so have the eight sides of the smallest circles' meshes, but not chamfers of 45 degrees."""
+"""Relative difference in width up to which the faces at an edge count as equal. Edges that turn no more than a regular
+octagon's then approximate a curve, as on the meshes of the smallest circles; chamfers of 45 degrees do not."""
 
 _FLAT = 1e-4
 """Faces that turn less (radians) are one flat face."""
 
 
 _ARC = np.radians(25.0)
-"""Edges that turn less than this are taken for chords of a curve when its mesh is judged: 15 to a circle."""
+"""Edges that turn less than this count as chords of a curve when the error of a mesh is judged: 15 to a circle."""
 
 
 @dataclass(frozen=True)
 class Edges:
-    """Edges of a closed mesh: vertices (e, 2), the faces on both sides (e, 2), and the turn of the normal in radians.
+    """Edges of a closed mesh: vertices (e, 2), the faces on both sides (e, 2), and the normal's turn (e,), radians.
 
     ``turn`` is positive where the surface is convex; the angle inside the body is pi less it.
     """
@@ -56,7 +56,7 @@ class SurfaceMesh:
 
     @cached_property
     def areas(self) -> Array:
-        """Areas, (m,), mm2."""
+        """Areas of the triangles, (m,), mm2."""
         return cast(Array, 0.5 * np.linalg.norm(self._crosses, axis=1))
 
     @cached_property
@@ -86,7 +86,7 @@ class SurfaceMesh:
 
     @cached_property
     def creases(self) -> Flags:
-        """Edges that belong to the drawing, not only to the mesh, (e,)."""
+        """True for edges that are drawn ones, not only of the mesh, (e,)."""
         edges, turn = self.edges, np.abs(self.edges.turn)
         drawn: Flags = turn >= CREASE
         rows = np.flatnonzero(drawn & (turn <= _OCTAGON))
@@ -99,7 +99,7 @@ class SurfaceMesh:
         return drawn
 
     def _joined(self, smooth: Flags) -> Indices:
-        """Number of the group of each triangle, (m,), where groups are joined over given edges."""
+        """Number of the group of each triangle, (m,); triangles join over the edges that are ``smooth`` (e,)."""
         pairs = self.edges.faces[smooth]
         return components(len(self.triangles), pairs[:, 0], pairs[:, 1])
 
@@ -178,10 +178,10 @@ class SurfaceMesh:
 
 
 SPACING = 0.5
-"""Points lie about this far apart, mm, on parts small enough."""
+"""Distance of the points, mm, on parts small enough (see `MOST`)."""
 
 MOST = 9000
-"""Points of a part; a larger one gets a wider spacing, and still one point on every face group."""
+"""Number of points of a part; a larger one gets a wider spacing, and still one point on every face group."""
 
 _INSET = 0.02
 """Distance of a point near an edge from it, mm."""
@@ -246,7 +246,7 @@ def _near_edges(surface: SurfaceMesh, spacing: float) -> tuple[Array, Indices]:
 
 
 def _counts(surface: SurfaceMesh, spacing: float, most: int) -> Indices:
-    """Points of each face."""
+    """Number of points of each face, (m,)."""
     areas = surface.areas
     quota = max(spacing**2, float(areas.sum()) / most)
     steps = np.floor(np.concatenate([[0.0], np.cumsum(areas)]) / quota + 0.5)

@@ -1,7 +1,7 @@
 """Thin places of a part by kind: walls, pins, holes, channels, gaps, ridges and grooves, each as one place.
 
-A place is a set of smooth face groups that chords join. Where fillets make one face of several features they are one
-place, described by its narrowest.
+A place is a set of smooth face groups that chords join. Several features whose faces fillets merge are one place,
+described by its narrowest.
 """
 
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from pneutouch.printability.subject import Point3
 FeatureKind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 
 OPENINGS: tuple[FeatureKind, ...] = ("hole", "channel", "gap", "engraved")
-"""Kinds that are void, not matter."""
+"""Kinds that are empty space, not material."""
 
 ROUND = 2.0
 """An opening at most this many times as wide in one direction as in the other is a hole, else a gap."""
@@ -31,15 +31,15 @@ LONG = 3.0
 """A hole longer than this many widths is a channel."""
 
 _KNIFE = np.radians(30.0)
-"""Angle below which faces that meet leave chords down to nothing: the edge is the fault there."""
+"""Angle, radians, below which faces that meet leave chords down to nothing: there the edge is reported instead."""
 
 BLUNT = 0.5
 """Distance (mm) from its thin end at which a taper's thickness is measured: a shorter one is a blunt edge, not a wall
 (our choice, unverified)."""
 
 _BENT = 1.25
-"""Ratio of a feature's length by its area to that by its extent, above which it counts as bent: up to a quarter more
-for a hole that is not round."""
+"""Ratio of a feature's length by its area to that by its extent, above which it counts as bent; a hole that is not
+round reaches up to a quarter more."""
 
 _ALONG = np.radians(2.0)
 """Faces that part by less run along each other, within the accuracy of interpolated normals."""
@@ -50,7 +50,7 @@ _PER_GROUP = 48
 
 @dataclass(frozen=True)
 class ThinPlace:
-    """One thin place: ``size`` at its narrowest, mm, at ``where``; ``length`` along it (mm) for pins and holes.
+    """One thin place: ``size`` at its narrowest, mm, at ``where``; ``length`` along it (mm) for pins and holes, else 0.
 
     ``turn`` is the greatest turn (radians) between two faces of the curves around it.
     """
@@ -85,7 +85,7 @@ def thin_places(
 
 
 def _is_round(manifold: Any, surface: SurfaceMesh, short: Chords, side: Side) -> Flags:
-    """Flags of the chords across pins (inside) or holes (outside), (n,)."""
+    """True for chords across pins (inside) or holes (outside), (n,)."""
     if side == "outside":
         return np.asarray(short.second <= ROUND * short.length)
     rows = np.flatnonzero(short.second <= STOUT * short.length)
@@ -104,7 +104,7 @@ def _slope(surface: SurfaceMesh, some: Chords) -> Array:
 
 @dataclass(frozen=True)
 class _Sized:
-    """Chords of one place: their lengths, those with the taper, and which are at a flank or round."""
+    """Chords of one place: their lengths, those with the taper, and True for the ones at a flank, or round."""
 
     chords: Chords
     lengths: Array
@@ -114,7 +114,7 @@ class _Sized:
 
 
 def _place(side: Side, some: _Sized, faces: int) -> ThinPlace:
-    """Place of chords, of one kind: raised or engraved if most are at flanks, else the kind of its narrowest tenth.
+    """The place of some chords: raised or engraved if most are at flanks, else the kind of its narrowest chords.
 
     ``faces`` is the number of face groups around it.
     """
@@ -173,7 +173,7 @@ def _thinned(chords: Chords, groups: Indices) -> Chords:
 
 
 def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
-    """Rows of each place: chords whose face groups they join at both ends, and across where the place is round."""
+    """Rows of the chords of each place: chords join the face groups at their ends and, if round, at their sides."""
     near = groups[some.near]
     one = np.concatenate([near, *[near[round_]] * 2])
     other = groups[np.concatenate([some.far, *some.sides[round_].T])]
@@ -182,7 +182,7 @@ def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
 
 
 def _in_wedge(surface: SurfaceMesh, chords: Chords, side: Side) -> Flags:
-    """Chords in the corner between two faces that meet at less than 30 degrees, (n,) bool."""
+    """True for chords in the corner between two faces that meet at less than 30 degrees, (n,)."""
     edges = surface.edges
     turn = edges.turn if side == "inside" else -edges.turn
     sharp = turn > np.pi - _KNIFE

@@ -1,4 +1,4 @@
-"""Bodies as they stand: solid meshes as fine as the machine, overlaps, contact and sensing faces, the envelope."""
+"""Rules on bodies as a whole: meshes, overlaps, contact faces, sensing faces, and the build volume."""
 
 from itertools import combinations
 
@@ -19,13 +19,13 @@ _SOLID = (
 _FINEST = "the machine's finest step: least of layer height and pixel, as its profile states; "
 _VENDOR = "vendor, objet.com Tips and Tricks: finer does not print better; four times finer: own, unverified"
 _GUESS = 1.5
-"""Factor by which a sagitta overstates the deviation of a mesh that keeps its area."""
+"""Factor by which a sagitta overstates the deviation of a mesh with the same area as its curve."""
 _FINER = 4.0
 """Chords this many times narrower than the finest step needs make at least as many times the triangles."""
 
 
 def check_mesh(view: PrintView) -> list[Finding]:
-    """Measure closedness, the deviation from the exact solid and the width of chords."""
+    """Findings on open meshes, on their deviation from the exact solid, and on chords finer than needed."""
     findings = []
     for part in view.parts:
         findings += _open(part) or [*_coarse(part), *_fine(part)]
@@ -64,7 +64,7 @@ def _coarse(part: PrintPart) -> list[Finding]:
 
 
 def _points(part: PrintPart) -> Array:
-    """Corners, middles of edges and middles of triangles: where a mesh is farthest off a smooth surface."""
+    """Corners, middles of edges and of triangles, (n, 3): there a mesh is farthest from a smooth surface."""
     body, ends = part.surface, part.surface.edges.ends
     return np.concatenate([body.vertices, body.vertices[ends].mean(axis=1), body.corners.mean(axis=1)])
 
@@ -89,15 +89,15 @@ def _fine(part: PrintPart) -> list[Finding]:
 _SOURCE = "vendor: one closed shell per material region, shells must not occupy the same space (multi-colour guideline)"
 _FIX = "report the design: this is a fault"
 _NOTHING = 1e-6
-"""Volume in mm3 below which an overlap is rounding: a cube of 10 um."""
+"""Volume in mm3 below which an overlap is due to rounding: a cube of 10 um."""
 _SAME = 1e-6
 """Corners that differ by less (mm) are the same."""
 _LEAST_SHARE = 0.999
-"""Share of a joint's exact area that the meshes must share."""
+"""Least share of a joint's exact area that the meshes must have in common."""
 
 
 def check_contact_faces(view: PrintView) -> list[Finding]:
-    """Measure the overlap of every two bodies and the area of the faces that they are to share."""
+    """Findings on every two bodies that overlap, and on joints whose faces share too little area."""
     overlaps = {
         frozenset((one.name, other.name)): finding
         for one, other in combinations(view.sound, 2)
@@ -155,13 +155,13 @@ def shared_area(one: Body, other: Body) -> float:
 
 
 def _whole(body: Body) -> Indices:
-    """Corners of the triangles in whole numbers, (m, 3, 3)."""
+    """Corners of the triangles as whole numbers of `_SAME`, (m, 3, 3)."""
     corners: Array = np.rint(body.corners / _SAME)
     return corners.astype(np.int64)
 
 
 def _ordered(whole: Indices) -> Indices:
-    """Each triangle's corners in order of size, (m, 9)."""
+    """Corners of each triangle, sorted, (m, 9)."""
     order = np.lexsort((whole[:, :, 2], whole[:, :, 1], whole[:, :, 0]), axis=1)
     return np.take_along_axis(whole, order[:, :, None], axis=1).reshape(-1, 9)
 
@@ -176,7 +176,7 @@ _OFF = 1e-3
 
 
 def check_matte(view: PrintView) -> list[Finding]:
-    """Measure the share of each sensing face that faces down or lies under its job's parts; cast ones are left out."""
+    """Findings on sensing faces of which too much faces down or lies under a part; cast ones are left out."""
     return [
         finding
         for job in view.jobs
@@ -218,7 +218,7 @@ def _touched(job: PrintJob, part: PrintPart, points: Array, normals: Array) -> F
 
 
 def check_envelope(view: PrintView) -> list[Finding]:
-    """Compare the bounds with the build direction and either way across it; what is cast has no machine to fit in."""
+    """Findings on jobs larger than the build volume, also if turned a quarter on the tray; cast ones are left out."""
     jobs = (job for job in view.jobs if not job.printer.is_casting)
     return [finding for job in jobs if (finding := _check_bounds(job)) is not None]
 

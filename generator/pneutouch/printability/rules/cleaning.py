@@ -1,4 +1,4 @@
-"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out."""
+"""Rules on support that cannot be washed out: hollows behind necks, corners out of sight, long thin channels."""
 
 import numpy as np
 
@@ -19,19 +19,19 @@ _LONG = "Forge Labs PolyJet guideline: deep holes keep residue; ten widths: own,
 _FILAMENT = "own, unverified: support that no tool reaches stays in"
 
 CONFINED = 0.5
-"""Opening over the width behind it, below which a hollow is as good as closed."""
+"""Ratio of an opening to the width behind it, below which a hollow is as good as closed."""
 SLENDER = 10.0
 """Ratio of a channel's length to its width from which water does not suffice to clear it."""
 _HIDDEN = 2.0
-"""Volume out of sight (mm3) that is worth a finding, if it is also at least 30 cubes of the model."""
+"""Least volume out of sight (mm3) for a finding; it must also be 30 cubes of the model."""
 _SAMPLED, _DIRECTIONS = 40, 300
-"""Cubes out of sight that are checked again, and directions spread evenly over the sphere (Fibonacci's spiral)."""
+"""Number of cubes out of sight that are checked again, and of directions over the sphere (Fibonacci's spiral)."""
 _BRIDGED = 50.0
-"""Ceiling in mm2 that a filament printer bridges without support: about 7 mm in each direction."""
+"""Area of a ceiling, mm2, that a filament printer bridges without support: about 7 mm in each direction."""
 
 
 def check_cleaning(view: PrintView) -> list[Finding]:
-    """Look into each job as it is printed; filament and resin need support only under ceilings, casting needs none."""
+    """Findings on hollows and channels in which support would stay; a casting has no support."""
     findings = []
     for job in view.jobs:
         if job.sound and not job.printer.is_casting:
@@ -91,7 +91,7 @@ def _hidden(job: PrintJob) -> list[Finding]:
 
 
 def _escapes(job: PrintJob, cells: Indices) -> Flags:
-    """True if a straight line leads from the middle of a cube to the outside, (n,)."""
+    """True for cubes from whose middle a straight line leads to the outside, (n,)."""
     index = np.arange(_DIRECTIONS) + 0.5
     height, turn = 1 - 2 * index / _DIRECTIONS, np.pi * (1 + 5**0.5) * index
     ring = np.sqrt(1 - height**2)
@@ -103,7 +103,7 @@ def _escapes(job: PrintJob, cells: Indices) -> Flags:
 
 
 def _needs_support(job: PrintJob, region: Flags) -> bool:
-    """True if a region needs support: always by PolyJet, by filament and resin under ceilings too wide to bridge."""
+    """True if a region is filled with support: always by PolyJet, else under ceilings too wide to bridge."""
     if job.printer.process == "polyjet":
         return True
     ceiling = overhangs(job.voxels)[:, :, 1:] & region[:, :, :-1]
@@ -136,7 +136,7 @@ _CLOSED_FILAMENT = "our choice, unverified: a closed hollow cannot be inspected,
 
 
 def check_hollows(view: PrintView) -> list[Finding]:
-    """Look for shells that face inwards, in each body and in the bodies that a job joins to one."""
+    """Findings on closed hollows, in each body and between the bodies that a job joins."""
     findings = []
     for job in view.jobs:
         source = _SOURCE if job.printer.process == "polyjet" else _CLOSED_FILAMENT

@@ -1,6 +1,6 @@
 """Features of one body, and gaps between bodies printed together, against the smallest that their machine prints.
 
-Measured on the meshes; with edges too sharp to print, and triangles too thin to be written.
+They are measured on the meshes. Also edges too sharp to print, and triangles too thin to be written.
 """
 
 from collections.abc import Iterator
@@ -20,13 +20,13 @@ from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.spec.printer import FeatureSize
 
 _ALIKE = 0.02
-"""Places whose sizes differ by less (mm) and that break the same limit are reported once."""
+"""Places of one kind and severity whose sizes differ by less (mm) are reported once."""
 
 
 def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: str, fix: str) -> list[Finding]:
-    """Findings of a rule: places of ``kinds``, each with its name in words, below a limit of the printer.
+    """Findings of ``rule``: places of the ``kinds``, each with its name in words, below the printer's ``limit``.
 
-    ``fix`` holds where the item gives no hint of its own.
+    ``fix`` is the remedy unless the item gives a hint of its own.
     """
     findings = []
     for part in view.sound:
@@ -44,14 +44,14 @@ def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: st
 
 
 def lower(size: float, feature: FeatureSize, slack: float) -> float | None:
-    """The limit that a size (mm) is below, the harder one first; None if it is below none."""
+    """The limit that a size (mm) is below by more than ``slack``: the least, else the recommended one; or None."""
     if feature.least is not None and size < feature.least - slack:
         return feature.least
     return feature.recommended if size < feature.recommended - slack else None
 
 
 def severity_of(size: float, feature: FeatureSize, slack: float) -> Severity:
-    """Severity of a size: an error below the machine's least, a warning below the recommended one."""
+    """Severity of a size too small: error if below the machine's least by more than ``slack``, else warning."""
     return "error" if feature.least is not None and size < feature.least - slack else "warning"
 
 
@@ -63,7 +63,7 @@ def wording(size: float, limit: float, severity: Severity) -> str:
 
 
 def _alike(broken: list[tuple[Severity, float, ThinPlace]]) -> Iterator[tuple[Severity, float, list[ThinPlace]]]:
-    """Places of one size together; they come narrowest first."""
+    """Severity, limit and places that are alike (see `_ALIKE`), in the order of the narrowest."""
     left = list(broken)
     while left:
         severity, least, first = left[0]
@@ -98,7 +98,7 @@ def spot(where: object) -> Point3:
 
 
 class SizeRule(NamedTuple):
-    """The printer's ``limit`` that a rule compares with, the kinds of feature by name, and what would fix one."""
+    """A rule on sizes: the printer's ``limit``, kinds of features with their names in words, and the remedy."""
 
     limit: str
     features: dict[FeatureKind, str]
@@ -120,27 +120,27 @@ SIZE_RULES = {
 
 
 def check(view: PrintView, name: str) -> list[Finding]:
-    """Compare every feature of one of the `SIZE_RULES`."""
+    """Findings of the rule ``name`` of `SIZE_RULES`: features of its kinds that are below the printer's limit."""
     rule = SIZE_RULES[name]
     return compare(view, name, rule.features, rule.limit, rule.fix)
 
 
 CHECKS = {name: partial(check, name=name) for name in SIZE_RULES}
-"""The rules as functions of the view."""
+"""The `SIZE_RULES` as functions of a view, by name."""
 
 
 _KNIFE = 30.0
-"""Angle inside the body (degrees) below which an edge is too sharp."""
+"""Angle between faces inside the body (degrees) below which an edge is too sharp."""
 _ROUNDING = 1e-4
 """Degrees by which an edge drawn at the limit may miss it."""
 _LENGTH = 0.5
-"""Length of sharp edges in mm that is worth a finding."""
+"""Length of sharp edges in mm above which there is a finding."""
 _SHARP = "own, unverified: an edge thins to nothing, and below the smallest wall it is not printed"
 _WRITTEN = "STL holds coordinates as 32-bit floats; 3MF readers do likewise"
 
 
 def check_edges(view: PrintView) -> list[Finding]:
-    """Look at the angle inside of every edge, and at every triangle after rounding."""
+    """Findings on edges that are too sharp, and on triangles that vanish when a file rounds their corners."""
     return [finding for part in view.sound for finding in (*_knives(part), *_collapsed(part))]
 
 
@@ -184,13 +184,13 @@ _TOUCHING = 1e-3
 """Faces nearer than this (mm) are meant to touch."""
 
 _PARALLEL = -np.cos(np.radians(10.0))
-"""Cosine between normals of two bodies' faces below which these leave a gap; faces that meet at an edge do not."""
+"""Greatest cosine between normals of two bodies' faces that leave a gap; faces that meet at an edge do not."""
 
 _GAP_FIX = "widen the gap, close it, or print the bodies apart"
 
 
 def check_gaps(view: PrintView) -> list[Finding]:
-    """Compare every gap, within a body and between the bodies of a job."""
+    """Findings on gaps narrower than the printer's limit, within a body and between the bodies of a job."""
     findings = compare(view, "gaps", {"gap": "a gap"}, "gap", _GAP_FIX)
     for job in view.jobs:
         for one, other in combinations([part for part in job.parts if part.sound], 2):

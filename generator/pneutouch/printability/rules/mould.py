@@ -1,4 +1,4 @@
-"""Rules on a liquid silicone in a thin wall, and on the mould that it fills, cures in and leaves."""
+"""Rules on casting a liquid silicone in a thin wall, and on the mould that it fills, cures in and leaves."""
 
 import numpy as np
 
@@ -19,12 +19,12 @@ _DRAFT = (
 )
 
 _MOST_ERROR = 0.1
-"""Greatest error of the wall by the clearance of the cones, as a share of the wall: own choice."""
+"""Greatest error of the wall, as a share of it, by the clearance of the cones: own choice."""
 _ERROR = "the wall at the rim differs by the clearance of the cones; a tenth of it is allowed: own choice"
 
 
 def check_mould_fit(mould: MouldAssembly) -> list[Finding]:
-    """Measure the closed mould, and judge draft and clearance."""
+    """Findings on overlaps, cavity, undercuts, draft and error of the wall of a closed mould."""
     return [*_overlaps(mould), *_cavity(mould), *_undercuts(mould), *_draft(mould), *_wall_error(mould)]
 
 
@@ -89,7 +89,7 @@ def _wall_error(mould: MouldAssembly) -> list[Finding]:
 
 
 _SHARE = 0.5
-"""Share of the pot life that filling may take, after mixing and degassing: own choice."""
+"""Share of the pot life, counted from mixing, that filling may take: own choice."""
 
 _SOURCE = "slow flow of a Newtonian liquid through pour channel and wall (parts/mould/filling.py), half the pot life"
 _UNKNOWN = "the material's file states no mixed_viscosity_Pa_s"
@@ -106,7 +106,7 @@ def mould_filling(mould: MouldAssembly) -> MouldFilling | None:
 
 
 def check_mould_filling(mould: MouldAssembly) -> list[Finding]:
-    """Compare the times of all cavities, one after another, with half of the pot life."""
+    """Findings if half the pot life is shorter than pouring a cavity, or than the rise of bubbles; or unknown."""
     casting = mould.scene.membrane_material.casting
     times = mould_filling(mould)
     if casting is None:
@@ -146,7 +146,7 @@ _RELEASE_SOURCE = (
 
 
 def check_mould_release(mould: MouldAssembly) -> list[Finding]:
-    """Compare the strain needed, times `SAFETY`, with the elongation at break."""
+    """Finding if the strain needed to leave the core, times `SAFETY`, exceeds the elongation at break."""
     release = release_of(mould.membrane, mould.size)
     needed = 100 * SAFETY * release.strain
     broken = mould.scene.membrane_material.elongation_at_break_percent
@@ -173,9 +173,9 @@ _PREPARED = "3 min of mixing and 5 min of vacuum (fabrication notes of the repos
 _FLOW = f"film of a Newtonian liquid between plates under its own weight, rho g t2 / (12 eta); {_PREPARED}"
 _STOKES = f"Stokes's law, a bubble rises by 2/9 rho g r2 / eta; {_PREPARED}; share of the wall: own, unverified"
 _SLOW = 0.5
-"""Share of the time left for pouring from which filling is a warning: the viscosity rises as it cures (own)."""
+"""Share of the time left for pouring above which filling is a warning: the viscosity rises as it cures (own)."""
 _LARGE_BUBBLE = 0.5
-"""Diameter of a bubble over the wall from which it is a weak spot that may leak (own, unverified)."""
+"""Ratio of a bubble's diameter to the wall above which it is a weak spot that may leak (own, unverified)."""
 _GRAVITY = 9.81
 _PHOTOPOLYMER = "uncured photopolymer"
 _INHIBITION = (
@@ -185,7 +185,7 @@ _INHIBITION = (
 
 
 def check_filling(view: PrintView) -> list[Finding]:
-    """Compare the time in which the liquid runs down the wall by its weight with the pot life left after mixing."""
+    """Finding if the silicone takes too much of the pot life left after mixing to run down the wall by its weight."""
     pour = _cast(view)
     if pour is None or pour[2].mixed_viscosity_Pa_s is None:
         return []
@@ -204,7 +204,7 @@ def check_filling(view: PrintView) -> list[Finding]:
 
 
 def check_bubbles(view: PrintView) -> list[Finding]:
-    """Compare the largest bubble that does not rise out of the mould in the pot life with the wall."""
+    """Finding on the largest bubble that does not rise out of the mould in the pot life left after mixing."""
     pour = _cast(view)
     if pour is None or pour[2].mixed_viscosity_Pa_s is None:
         return []
@@ -221,7 +221,7 @@ def check_bubbles(view: PrintView) -> list[Finding]:
 
 
 def check_inhibition(view: PrintView) -> list[Finding]:
-    """Look for printed photopolymer that the liquid cures against: it stays sticky there."""
+    """Findings on printed photopolymer against which the silicone cures: it stays sticky there."""
     pour = _cast(view)
     if pour is None or _PHOTOPOLYMER not in pour[2].inhibited_by:
         return []
@@ -263,7 +263,7 @@ def _weight(part: PrintPart) -> float:
 
 
 def _filling_min(part: PrintPart, context: SensorContext, casting: Casting) -> float:
-    """Time to run along the wall from rim to pole, min."""
+    """Time in which the silicone runs along the wall between rim and pole, min."""
     assert casting.mixed_viscosity_Pa_s is not None
     dome = context.sensor.dome
     arc, wall = 1e-3 * dome.shape.arcs[0], 1e-3 * dome.wall_thickness
@@ -272,7 +272,7 @@ def _filling_min(part: PrintPart, context: SensorContext, casting: Casting) -> f
 
 
 def _bubble(part: PrintPart, context: SensorContext, casting: Casting) -> float:
-    """Diameter of the largest bubble that does not rise by the dome's height in the pot life that is left, mm."""
+    """Diameter of the largest bubble that does not rise by the dome's height in the pot life left, mm."""
     assert casting.mixed_viscosity_Pa_s is not None
     seconds = 60 * max(_left_min(casting), 1.0)
     speed = 1e-3 * context.sensor.dome.shape.outer_height / seconds

@@ -1,4 +1,4 @@
-"""Resins of each job or voxel stack against what its machine runs at once, and a mix by its other mixing curves."""
+"""Rules on the resins of a job or voxel stack that its machine must run at once, and on mixes with mixing curves."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ _FIX = "take resins that the machine runs together, or print the bodies one afte
 
 
 def check_resins(view: PrintView) -> list[Finding]:
-    """Compare the base resins of all materials of a job with the machine and its mode."""
+    """Findings on jobs whose materials need base resins, machines or modes that do not go together."""
     return [finding for job in view.jobs if (finding := _check(job)) is not None]
 
 
@@ -48,7 +48,7 @@ def _check(job: PrintJob) -> Finding | None:
 
 
 def _other(job: PrintJob, resins: list[str], digital: bool) -> str:
-    """Advice to print in a mode that fits, else the general advice."""
+    """Advice to print in another mode that fits, or the general advice if none does."""
     printer = job.parts[0].item.printer
 
     def fits(mode: Mode) -> bool:
@@ -67,7 +67,7 @@ _SOURCE = (
 
 
 def check_mixing_curve(view: PrintView) -> list[Finding]:
-    """One finding for a mix whose pair has several mixing curves; a warning where one of them has no modulus for it."""
+    """Finding on a mix, with its outcome by each mixing curve; a warning if it lies beyond one of them."""
     context = view.sensor
     if context is None or not context.curves:
         return []
@@ -80,7 +80,7 @@ def check_mixing_curve(view: PrintView) -> list[Finding]:
 
 
 def _outcome(outcome: CurveOutcome) -> str:
-    """A curve with the mean modulus, and sensitivity, range and rating at the highest pressure that was solved."""
+    """Words on a mixing curve: the mean modulus, and the figures and rating at the highest driving pressure solved."""
     by_curve = outcome.by_curve
     head = f"by {by_curve.curve} ({by_curve.place}) {by_curve.shear_modulus_MPa.nominal:.2f} MPa"
     if not outcome.states or outcome.rated is None:

@@ -1,4 +1,4 @@
-"""The working of the sensor: its wall in layers, its driving pressures, the bond of its glue, its freedom to move."""
+"""Rules on the working of the sensor: its wall in layers, driving pressures, bond of its glue, freedom to move."""
 
 import math
 from typing import NamedTuple
@@ -14,22 +14,22 @@ from pneutouch.units import KPA, UM
 
 _SOURCE = "layer height and pixel as the printer's profile states them; a tenth of a step: own, unverified"
 _OFF = 0.1
-"""Share of a step by which a wall may miss a whole number of them."""
+"""Share of a step by which a wall may differ from a whole number of steps."""
 
 
 _FAR = 4.0
-"""Greatest distance of the advised wall from the drawn one, in the coarser of the two steps."""
+"""Greatest distance of the advised wall from the drawn one, in units of the coarser of both steps."""
 
 
 class WallStep(NamedTuple):
-    """The machine's step across the wall at one place: layers or pixels, mm."""
+    """The machine's step across the wall at one place: layers or pixels of ``size`` mm."""
 
     unit: str
     place: str
     size: float
 
     def off(self, wall: float) -> float:
-        """Share of a step by which a wall misses a whole number of them."""
+        """Share of a step by which a wall differs from the nearest whole number of steps."""
         return abs(wall / self.size - round(wall / self.size))
 
     def printed(self, wall: float) -> tuple[float, float]:
@@ -38,7 +38,7 @@ class WallStep(NamedTuple):
 
 
 def check_layers(view: PrintView) -> list[Finding]:
-    """Compare the wall with the steps of the machine at the pole and at the rim: one finding for each wall.
+    """Finding on a wall that is no whole number of the machine's steps at the pole or at the rim.
 
     The wall of a calibrated sensor is printed already, and fitted: it has no finding. A cast wall has no steps.
     """
@@ -84,7 +84,7 @@ def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
 
 
 def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> str:
-    """The atlas's sensitivities between both walls; nothing where it does not cover the sensor."""
+    """Words on the atlas's sensitivities with both walls, mm; empty if it does not cover the sensor."""
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
     from pneutouch.mechanics.models.choice import outside
@@ -112,8 +112,8 @@ _SOURCES = {
 
 
 def check_driving(view: PrintView) -> list[Finding]:
-    """Compare the highest driving pressure with the rated pressure and the nominal limit, and the pressure while
-    pressed with the range of a gauge that the design names."""
+    """Findings on a highest driving pressure above the rated pressure or the nominal limit, and on presses that pass
+    the range of a gauge that the design names."""
     return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor)]
 
 
@@ -176,7 +176,7 @@ _SEATS = "take connector.seat = clamped-flange-M2, which needs none"
 
 
 def check_glue(view: PrintView) -> list[Finding]:
-    """Look up the pair of surfaces in the table of glues; nothing where no glue is named or chosen."""
+    """Finding on a glue that bonds its two surfaces weakly or not; none if no glue is named or chosen."""
     context = view.sensor
     if context is None or context.glued is None or context.calibrated:
         return []
@@ -200,11 +200,11 @@ _MEETING = (
     "this project's prediction: the model's wall passes through this body: its figures do not hold where they touch"
 )
 _TOUCH = 0.05
-"""Depth in mm below which a contact is within the errors of mesh and prediction."""
+"""Depth in mm up to which an overlap is within the errors of mesh and prediction."""
 
 
 def check_freedom(view: PrintView) -> list[Finding]:
-    """Findings on the deepest contact of the inflated or pressed wall with each other body; none without shapes."""
+    """Findings on the deepest overlap of the inflated or pressed wall with each other body; none without shapes."""
     if view.sensor is None:
         return []
     others = [part for part in view.parts if part.name != view.sensor.membrane and part.sound]
@@ -236,7 +236,7 @@ def check_freedom(view: PrintView) -> list[Finding]:
 
 
 def _deepest(part: PrintPart, plane: Array) -> tuple[float, tuple[float, float, float]]:
-    """Greatest depth in mm of points (n, 2) in (r, z) inside a body, in the half plane y = 0, and where; 0 outside."""
+    """Greatest depth, mm, inside a body of points (n, 2), (r, z) in the half plane y = 0, and where; 0 outside."""
     low, high = part.item.body.bounds
     near = plane[(plane[:, 0] >= -1e-9) & (plane[:, 0] < high[0]) & (plane[:, 1] > low[2]) & (plane[:, 1] < high[2])]
     points = np.column_stack([near[:, 0], np.full(len(near), 1e-4), near[:, 1]])
