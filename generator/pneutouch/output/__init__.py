@@ -1,1 +1,1 @@
-"""The only code that writes folders: files, manifest, recipe, new design files."""
+"""Output files and folders with their manifests, recipes of builds, and new design files."""

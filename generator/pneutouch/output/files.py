@@ -27,7 +27,7 @@ _OLD = ".old"
 """Ending of the temporary name that two folders need to exchange their names."""
 
 _HERE, _EXCHANGE = -100, 2
-"""AT_FDCWD and RENAME_EXCHANGE of Linux (linux/fcntl.h, linux/fs.h)."""
+"""Constants AT_FDCWD and RENAME_EXCHANGE of Linux (linux/fcntl.h, linux/fs.h)."""
 
 _MOST_MANIFEST = 100_000_000
 """Greatest size of a manifest in bytes; a campaign of many runs has a long one."""
@@ -136,9 +136,9 @@ def _refused(path: Path, error: OSError, key: str) -> InputError:
 
 
 def check_writable(folder: Path, key: str = "out") -> None:
-    """Raise InputError if an output folder cannot be made or written, or is not ours; ``key`` is its parameter.
+    """Raise InputError if an output folder cannot be written or was not written by pneutouch; ``key`` gave it.
 
-    A folder is not ours either if one of its files is not as the manifest states: a person has changed that file.
+    The same holds if one of its files is not as the manifest states: a person has changed that file.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file", key=key, remedy="it must be a folder")
@@ -155,7 +155,7 @@ def check_writable(folder: Path, key: str = "out") -> None:
 
 
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:
-    """Replace ``folder`` by ``files`` (path inside it to content); what others put there is kept.
+    """Replace ``folder`` by ``files`` (path inside it to content); files of others in it are kept.
 
     Raises InputError as `replacing`. Everything is written to a hidden folder next to it first. A run that stops before
     the last renames leaves the previous output as it was.
@@ -169,7 +169,7 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
 
 @contextlib.contextmanager
 def replacing(folder: Path) -> Iterator[Path]:
-    """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
+    """A hidden folder to write into, which takes the place of ``folder`` when the block ends; files of others are kept.
 
     Raises InputError if it cannot be written, even half way, or if it would replace or remove a file that is not as the
     folder's manifest states; then only the previous output remains. Of two processes in one folder the later one
@@ -189,7 +189,7 @@ def replacing(folder: Path) -> Iterator[Path]:
 
 
 def _swap(folder: Path, fresh: Path) -> None:
-    """Put ``fresh`` in the place of ``folder``; files that are not ours are brought over, our previous ones removed."""
+    """Put ``fresh`` in place of ``folder``: files of others are brought over, previous ones of pneutouch removed."""
     fresh.chmod(0o755)
     if not folder.exists():
         fresh.rename(folder)
@@ -200,8 +200,8 @@ def _swap(folder: Path, fresh: Path) -> None:
 
 
 def exchange(folder: Path, fresh: Path, keep: Callable[[Path, Path], None] = lambda old, new: None) -> None:
-    """Put ``fresh`` in the place of an existing ``folder``, which is removed; ``keep`` takes the old and the replacing
-    folder, and brings over what came meanwhile, or raises, so that the old one is put back.
+    """Put ``fresh`` in place of an existing ``folder``, which is removed; ``keep``, called with the old and the new
+    folder, brings over what came meanwhile, or raises, so that the old one is put back.
 
     If the process is killed, one of the two is whole in the place of ``folder``, or is left where `_restore` finds it.
     """
@@ -230,7 +230,7 @@ def _exchange_names(one: Path, other: Path, aside: Path) -> None:
 
 
 def _at_once(one: Path, other: Path) -> bool:
-    """Exchange two names in one step; False where the system or its disk cannot. Python has no call for it."""
+    """Exchange two names in one step; False if system or disk cannot. It calls renameat2, which Python has not."""
     try:
         rename = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError, TypeError):
@@ -244,7 +244,7 @@ def _at_once(one: Path, other: Path) -> bool:
 
 
 def _restore(folder: Path) -> None:
-    """Bring back the folder that a process killed while it exchanged names left under the temporary name."""
+    """Bring back a folder that a process, killed as it exchanged names, left under the temporary name."""
     if os.path.lexists(folder) or not folder.parent.is_dir():
         return
     left = [path for path in folder.parent.iterdir() if path.name.startswith(f".{folder.name}.")]
@@ -272,7 +272,7 @@ def alone_in(parent: Path) -> Iterator[None]:
 
 
 def _our_files(folder: Path) -> set[str]:
-    """The files that the folder's manifest lists; raises InputError where the folder or one of these is not ours."""
+    """Names in the folder's manifest, and its own. Raises InputError if pneutouch did not write them as they are."""
     try:
         manifest = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))
         listed = {name: str(entry["sha256"]) for name, entry in manifest["files"].items()}
@@ -296,7 +296,7 @@ def _of_others(path: Path) -> InputError:
 
 
 def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
-    """Bring files, links and empty folders of others over; raises InputError if one is in the way or is a pipe.
+    """Bring files, links and empty folders of others over. Raises InputError if one is in the way or is a pipe.
 
     With ``again`` one that is there already was brought over before, and is left.
     """
@@ -329,14 +329,14 @@ def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
 
 
 LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
-"""Libraries whose versions the bytes of a build depend on."""
+"""Libraries on whose versions the bytes of a build depend."""
 
 _DIGITS = 12
 """Digits of an input hash."""
 
 
 def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
-    """Short digest of the inputs and the version."""
+    """Short digest of the inputs and the version of pneutouch."""
     return short_digest({"inputs": inputs, "version": version})
 
 
@@ -346,7 +346,7 @@ def short_digest(document: Mapping[str, Any]) -> str:
 
 
 def versions() -> dict[str, str]:
-    """The versions that the bytes of a build depend on; an extra that is not installed is left out."""
+    """Versions of pneutouch and of installed `LIBRARIES`, on which the bytes of a build depend."""
     installed = {name: version for name in LIBRARIES if (version := _installed(name)) is not None}
     return {"pneutouch": __version__, **installed}
 
@@ -359,17 +359,17 @@ def _installed(library: str) -> str | None:
 
 
 def file_entry(content: bytes) -> FileEntry:
-    """Entry of a file in a manifest."""
+    """Entry of a file in a manifest: its digest and its size."""
     return FileEntry(digest(content), len(content))
 
 
 def entry(content: bytes) -> Any:
-    """JSON data of a file's entry in a manifest."""
+    """The entry of a file in a manifest as JSON data."""
     return plain(file_entry(content))
 
 
 def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
-    """The files of a folder and their manifest. ``more`` are further fields; an ``input_hash`` among them is used."""
+    """The files with their manifest added; ``more``: further fields, of which an ``input_hash`` replaces the usual."""
     listed = {path: file_entry(content) for path, content in sorted(files.items())}
     return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
 

@@ -35,8 +35,8 @@ _DRAWN = ("designs", "specimens")
 class NewFile:
     """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``.
 
-    ``first`` says what has to be done before that command. ``profile`` is its kind where it is one of `PROFILES`,
-    for which there is no command of two words."""
+    ``first`` is a step to do before that command. For a profile, ``profile`` is its kind and ``command`` empty.
+    """
 
     path: Path
     command: tuple[str, ...]
@@ -50,7 +50,7 @@ def new_design(
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
 
     With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
-    returned with the path. Raises InputError if no profile does.
+    returned with the path (else None). Raises InputError if no profile does.
     """
     if process is None and material is None:
         return write_design(name, folder, design_template(name)), None
@@ -76,8 +76,8 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
     A design or a specimen may be given by its path.
 
     The copy goes to ``out``, else an example to the working folder and all others to the user's folder, where they are
-    found by their names; ``name`` left out is the example's own. Only a design takes ``changes``; printers, gauges and
-    materials go only to the user's folder. No file is replaced. Raises InputError.
+    found by their names. ``name`` may be left out for an example, which keeps its own. Only a design takes ``changes``;
+    printers, gauges and materials go only to the user's folder. No file is replaced. Raises InputError.
     """
     library, shipped = Library.default(), examples()
     kind = _profile_kind(source, library)
@@ -167,13 +167,13 @@ def _copied(kind: str, path: Path, name: str | None, out: Path | None) -> NewFil
 
 
 def free_name() -> str:
-    """A name that no design has, of the user's or shipped."""
+    """A name that no design has, neither of the user's nor of the shipped ones."""
     known = Library.default().paths("designs")
     return next(name for name in chain(["my-sensor"], (f"my-sensor-{k}" for k in count(2))) if name not in known)
 
 
 def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
-    """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
+    """Path of the file of a new design. Raises InputError for a bad name, or one that would hide another design."""
     path = folder / f"{plain_name(name, key='name')}.toml"
     known = Library.default().paths(kind).get(name)
     if known is not None and known.resolve() != path.resolve():
@@ -183,7 +183,7 @@ def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
 
 
 def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """The file of a new design, checked before anything is computed for it.
+    """Path of the file of a new design, checked before anything is computed for it.
 
     Raises InputError as `check_name` does, for a file that exists (unless ``overwrite``), and for a folder that cannot
     be written.
@@ -210,7 +210,7 @@ def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, o
 
 
 PROCESSES: tuple[str, ...] = get_args(Process)
-"""Processes of the profiles."""
+"""Processes that a profile may have."""
 
 _SHARE = 0.4
 """Ratio of a new design's highest driving pressure to the closed-form limit pressure: below the rating of a resin whose
@@ -218,7 +218,7 @@ modulus is known to a factor of two."""
 
 
 def process_values(process: str | None, material: str | None, library: Library) -> dict[str, dict[str, Any]]:
-    """Values by table and key that differ from the defaults. Raises InputError if no profile fits."""
+    """Values of a design by table and key that differ from the defaults. Raises InputError if no profile fits."""
     if process is not None and process not in PROCESSES:
         raise InputError(f"unknown.{nearest(process, PROCESSES)}", key="process", value=process)
     default = DesignFile()
@@ -267,7 +267,7 @@ def _soft(name: str, library: Library) -> Material:
 
 
 def _resin_of(printer: Printer, name: str | None, resin: Material | None, library: Library) -> str | None:
-    """The resin given if the printer runs it; if none is given, the design's default, else the first that runs."""
+    """The resin given, None if the printer does not run it; without one the default, or the first, that it runs."""
     if resin is not None:
         return name if printer.mode_for(resin) is not None else None
     known = library.all("materials", Material)

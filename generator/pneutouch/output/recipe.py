@@ -1,4 +1,4 @@
-"""Recipe of a build: everything that the build follows from, as data that a 3MF carries, sufficient to redo it.
+"""Recipe of a build: everything on which the build depends, as data that a 3MF carries, sufficient to redo it.
 
 Nothing of a recipe that is read from a 3MF is used before it is validated.
 """
@@ -47,7 +47,7 @@ class BuildRecipe:
         return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.options)
 
     def inputs(self) -> Mapping[str, Any]:
-        """Everything that the result depends on, as data; settings that the model does not use are null."""
+        """Everything that the result depends on, as data; closure and tolerance are null if they have no effect."""
         options = self.options
         return {
             "model": options.model,
@@ -76,13 +76,13 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
 
 
 def scene_kinds() -> dict[str, str]:
-    """The catalogue's kind of each field of a scene: ``membrane_material`` is one of the materials."""
+    """Kind in the catalogue by field of a scene: ``membrane_material`` is one of the ``materials``."""
     names = [field.name for field in fields(ResolvedDesign) if field.name not in ("name", "where")]
     return {name: f"{name.rpartition('_')[2]}s" for name in names}
 
 
 OPTIONAL = ("calibration", "gauge", "mould_printer", "mould_material")
-"""Fields of a scene that a recipe leaves out where they are None."""
+"""Fields of a scene that a recipe leaves out if they are None."""
 
 
 def scene_parts(scene: ResolvedDesign) -> dict[str, Table | None]:
@@ -96,7 +96,7 @@ def _data(model: Table | None) -> Any:
 
 
 FINEST_STEP = 1e-3
-"""Finest step in mm that a recipe's printers may have: none has a finer one, and meshes would grow without bound."""
+"""Least step in mm of a recipe's printers: none has a finer one, and meshes would grow without bound."""
 
 
 def read_recipe(package: Package) -> BuildRecipe:
@@ -173,7 +173,7 @@ def _part(kind: str, content: Any, where: str) -> Any:
 
 
 def _dated(content: dict[str, Any]) -> dict[str, Any]:
-    """A design with its date as TOML gives it; JSON has no dates. A wrong date is left for the validation."""
+    """A design with its date as a date, as TOML gives it, for JSON has none; a wrong one is left for the validation."""
     document = content.get("document")
     if not isinstance(document, dict) or not isinstance(document.get("date"), str):
         return content
@@ -195,7 +195,7 @@ def _resins(content: Any, where: str) -> Resins:
 
 
 def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
-    """Options of the prediction; a null keeps its default, which the model does not use."""
+    """Options of the prediction; a null stands for the default, which has no effect then."""
     model = _one_of(inputs, "model", MODEL_CHOICES, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
     given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}
@@ -222,7 +222,7 @@ def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str
 
 
 def _check_steps(scene: ResolvedDesign, where: str) -> None:
-    """Raise InputError for steps finer than any printer's: meshes would grow without bound."""
+    """Raise InputError for steps finer than any printer has: meshes would grow without bound."""
     if scene.mesh_tolerance < FINEST_STEP:
         raise InputError(
             f"the printers step by {scene.mesh_tolerance:g} mm",
@@ -232,7 +232,7 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
 
 
 def stored_versions(package: Package) -> Mapping[str, object]:
-    """The versions that a 3MF states; empty if they are damaged, as no build depends on them."""
+    """Versions by name that a 3MF states; empty if they are damaged, for no build depends on them."""
     try:
         stored = json.loads(package.metadata.get("versions", "{}"))
     except (ValueError, RecursionError):
@@ -241,7 +241,7 @@ def stored_versions(package: Package) -> Mapping[str, object]:
 
 
 def other_versions(package: Package, recipe: BuildRecipe) -> list[str]:
-    """Programs that made a 3MF and are of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
+    """Programs whose version was another when a 3MF was made, in words: ``pneutouch 0.1 (here 0.2)``."""
     made = {**stored_versions(package), "pneutouch": recipe.version}
     return [
         f"{name} {str(made[name])[:40]} (here {here})"
