@@ -85,8 +85,8 @@ class Design(show.Shown):
     """A sensor's design. It does not change: `replace` gives another one.
 
     Keyword arguments are the fields of a design file, with their units in their names; what is left out has its
-    default, and ``profile`` the first printer that runs the resin. A table may be given whole:
-    ``pneumatics={"tube_length_mm": 80}``. Raises InputError naming the keyword.
+    default, and ``profile`` the default printer, or if that does not run the resin the first that does. A table may be
+    given whole: ``pneumatics={"tube_length_mm": 80}``. Raises InputError naming the keyword.
     """
 
     def __init__(self, name: str = "design", **fields: Any) -> None:

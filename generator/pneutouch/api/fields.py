@@ -1,4 +1,4 @@
-"""Fields of a file as keyword arguments, named by their key, or ``table_key`` if a table before has the same key."""
+"""Fields of a file as keyword arguments, named by their key, or ``table_key`` if an earlier table has the same key."""
 
 import typing
 from collections.abc import Iterable, Iterator, Mapping
@@ -29,8 +29,8 @@ _MOST = 100_000
 def keywords(model: type[BaseModel]) -> dict[str, str]:
     """Every field of a file's ``model`` as ``table.key``, by its keyword; the first table of a key keeps the bare name.
 
-    Keys of the tables ``prefixed`` of the model, which mean nothing by themselves, always have the table's name. A key
-    outside the tables is its own keyword, and comes last."""
+    Keys of the model's ``prefixed`` tables always have the table's name; a key outside tables is its keyword, and last.
+    """
     fields: dict[str, str] = {}
     for name in model.model_fields:
         table = table_of(model, name)

@@ -120,7 +120,7 @@ def table_rows(file: BaseModel) -> list[tuple[str, str]]:
 
 
 class Listing(Shown, dict[str, str]):
-    """Titles by name."""
+    """Titles by name, shown as a table in a notebook."""
 
     def _head(self) -> str:
         return f"{len(self)} names"

@@ -1,4 +1,4 @@
-"""``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
+"""``pneutouch characterize``: measured runs turned into figures, compared with the predicted ones."""
 
 from collections.abc import Sequence
 from functools import partial

@@ -67,7 +67,7 @@ def compare(
 
 
 def comparison_text(comparison: ComparisonRecord) -> str:
-    """Differences, every figure with its interval, those that exceed their uncertainty, and the assumptions."""
+    """Inputs that differ, figures with intervals, differences that exceed their uncertainty, and assumptions."""
     labels = comparison_words.labels(comparison)
     sources = (f", {one.source}" if one.source not in ("", one.label) else "" for one in comparison.compared)
     lines = [f"{one.label}: {one.kind}{source}" for one, source in zip(comparison.compared, sources, strict=True)]

@@ -1,4 +1,4 @@
-"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file."""
+"""``pneutouch fit-material``: a tensile or puck test of a laboratory made into a material file."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def notify(text: str) -> None:
 
 
 def put(text: str) -> None:
-    """Write text as it is to stdout. Raises ComputationError if there is no space for it."""
+    """Write text as it is to stdout. Raises ComputationError if it cannot be written, such as on a full disk."""
     try:
         _write(sys.stdout, text)
     except OSError as error:

@@ -88,7 +88,7 @@ def _report(step: str) -> None:
 
 
 def _text(record: TrayRecord) -> str:
-    """A line for each print job: its resins, and how full it is; above them the printer and the parts."""
+    """The printer and the parts, then a line for each print job: its resins, and how full it is."""
     lines = [f"{record.printer}: {counted(record.parts, 'part')}, {record.resin_changes}"]
     lines += [
         f"{job.name}: {counted(job.parts, 'part')}, {' + '.join(job.resins)}, {job.mode}, "

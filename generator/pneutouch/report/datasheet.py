@@ -142,7 +142,7 @@ def _shapes(sheet: SheetData) -> SheetBlock:
 
 
 def _conditions(sheet: SheetData) -> list[SheetBlock]:
-    """Limits, conditions and surroundings."""
+    """Blocks on operating conditions, limits of the driving pressure, speed of reading, and environment."""
     left = section("Operating conditions", SheetTable(sheet_tables.operating(sheet), numeric=(1,)))
     right = [
         *section(
@@ -157,7 +157,7 @@ def _conditions(sheet: SheetData) -> list[SheetBlock]:
 
 
 def _making(sheet: SheetData) -> list[SheetBlock]:
-    """Mould, and how the sensor is made."""
+    """Blocks on the mould, on how the sensor is made, and on the findings of the print rules."""
     bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer", "Support")
     findings = [[f.severity, f.rule, f.message, f.fix] for f in sheet.findings]
     return [
@@ -172,7 +172,7 @@ def _making(sheet: SheetData) -> list[SheetBlock]:
 
 
 def _use(sheet: SheetData, date: str) -> list[SheetBlock]:
-    """Reliability, ordering, measuring and handling; then what the figures rest on."""
+    """Blocks on reliability, ordering, measuring and handling, then on what the figures rest on."""
     untested = SheetTable([[what, conditions.NOT_TESTED] for what in prose.RELIABILITY])
     revisions = SheetTable(
         [[sheet.scene.design.document.revision, date, "As predicted; first issue of this revision."]]

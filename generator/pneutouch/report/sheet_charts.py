@@ -21,7 +21,7 @@ def sensitivity(sheet: SheetData) -> Plot:
 
 
 def drawn_by(curves: dict[str, SensitivityCurve]) -> str:
-    """Models that drew the curves, with their resins, in words."""
+    """Words on the models that computed the curves, and on which of the resins by the solid."""
     models = sorted({curve.model for curve in curves.values()})
     if not models:
         return "no curve of a resin was computed"

@@ -1,4 +1,4 @@
-"""Jobs that take longer than an answer, one at a time in a process that can be ended, and the requests for them."""
+"""Jobs that take longer than an answer, each in a process that can be ended, and the requests for them."""
 
 import asyncio
 import contextlib

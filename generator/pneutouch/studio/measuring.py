@@ -138,8 +138,8 @@ class _Given:
 
 
 def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> RecognisedRuns:
-    """The runs of the files: as their campaign file lists them, with the columns found; else proposed, each read as a
-    steps run at the driving pressure that it shows before contact.
+    """The runs of the files: as their campaign file lists them, with the columns found; else proposed, each with the
+    kind and the driving pressure that its record shows.
 
     Raises InputError if the campaign is wrong or nothing may be a run.
     """

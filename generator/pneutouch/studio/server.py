@@ -1,4 +1,4 @@
-"""The studio served on a free port of 127.0.0.1 with a one-time token: requests of the page and their answers."""
+"""The studio served on a port of 127.0.0.1 with a one-time token: requests of the page and their answers."""
 
 import asyncio
 import contextlib
@@ -199,11 +199,11 @@ _HEAD_SECONDS, _REST_SECONDS = 10, 120
 """Seconds that a connection has to send a request's head, and to send its body or read on in an answer."""
 
 _MOST_CONNECTIONS, _AT_ONCE = 128, 4
-"""Greatest number of connections open or waiting; and of those accepted at once, before surplus ones are closed."""
+"""Greatest number of connections open or waiting; and of those accepted at a time before surplus ones are closed."""
 
 
 def most_connections(files: int) -> int:
-    """Greatest number of open connections if a process may have ``files`` open files; -1 means no limit."""
+    """Greatest number of open connections if a process may have ``files`` open files, -1 for no limit."""
     return min(_MOST_CONNECTIONS, files // 4) if files > 0 else _MOST_CONNECTIONS
 
 
