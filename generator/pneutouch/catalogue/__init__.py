@@ -1,6 +1,6 @@
 """The registry, which finds designs, printers, materials and parts by name.
 
-Its names are loaded when they are first used: to list files needs nothing of what resolves a design.
+Its names are imported on first use: listing files does not load the code that resolves designs.
 """
 
 from typing import TYPE_CHECKING

@@ -44,7 +44,7 @@ def user_folder() -> Path:
     """The folder that holds the user's ``designs``, ``calibrations`` and ``printprofiles``.
 
     It is ``$PNEUTOUCH_HOME``, else the working folder; in a checkout of the program, whose folders of these names are
-    shipped, it is ``user/``. Relative where it is found from the working folder, so that messages stay short.
+    shipped, it is ``user/``. The last two are relative paths, so that messages stay short. Raises InputError.
     """
     named = os.environ.get(HOME)
     if named:
@@ -66,7 +66,7 @@ _KINDS = {"target": "target", "entry": "tray", "grid": "sweep", "point": "sweep"
 """Kind of file by a key that only files of this kind have."""
 
 COMMANDS = {"target": "select", "tray": "tray", "sweep": "sweep", "campaign": "characterize"}
-"""Name of the command that takes a kind of file."""
+"""Command that takes an example file, by the kind of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ def examples() -> dict[str, Example]:
 
 
 def example_remedy(name: str) -> str | None:
-    """Command that copies the example of this name, given when a file was expected; None if there is none."""
+    """Remedy with the command that copies the shipped example ``name``; None if there is no such example."""
     name = name.removesuffix(".toml")
     example = examples().get(name)
     if example is None:
@@ -119,7 +119,7 @@ ValidateFile = Callable[[dict[str, Any], str], BaseModel]
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """One kind of thing: how its files are validated, and the folder they lie in."""
+    """A kind of thing: the validator of its files and their folder; ``part``: True if the package holds some too."""
 
     validate: ValidateFile
     folder: str
@@ -150,7 +150,7 @@ def _gauge(content: dict[str, Any], where: str) -> BaseModel:
 
 
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
-    """Validator of files that have the keys of the family that they name."""
+    """Validator of files by the model of the ``family`` that each file names."""
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
@@ -178,7 +178,7 @@ KINDS: dict[str, FileKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """All files that can be named. ``folders`` are searched in order; the first hit wins."""
+    """All files that can be named: ``folders`` are searched in order, for parts the package last; first hit wins."""
 
     folders: tuple[Path, ...]
 
@@ -199,7 +199,7 @@ class Library:
         return dict(sorted(content.items()))
 
     def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
-        """Load one thing by name; ``file`` and ``key`` state where the name was written, for the error."""
+        """Load one thing by name. Raises InputError; ``file`` and ``key`` state in it where the name was written."""
         paths = self.paths(kind)
         if name not in paths:
             problem = f"no such name among the {kind}.{nearest(name, paths)}"
@@ -214,7 +214,7 @@ class Library:
         return {name: cast(Model, self.load(kind, name)) for name in self.paths(kind)}
 
     def readable(self, kind: str, model: type[Model]) -> dict[str, Model]:
-        """Load everything of one kind as `all`, without invalid files, which a message must not propose."""
+        """Load everything of one kind by name; invalid files, which a message must not propose, are left out."""
         content: dict[str, Model] = {}
         for name in self.paths(kind):
             with suppress(InputError):
@@ -222,7 +222,7 @@ class Library:
         return content
 
     def design_file(self, name: str) -> Path:
-        """The file of a design given by name or by path. Raises InputError if there is none."""
+        """The file of a design by name; a path, which need not exist. Raises InputError for an unknown name."""
         path, paths = Path(name), self.paths("designs")
         if name in paths:
             return paths[name]
@@ -268,7 +268,7 @@ class CachedLibrary(Library):
         return self._files[kind]
 
     def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
-        """Load one thing by name; raises InputError as a library does."""
+        """Load one thing by name, from its file only once. Raises InputError as `Library.load` does."""
         if (kind, name) not in self._things:
             self._things[kind, name] = super().load(kind, name, file=file, key=key)
         return self._things[kind, name]
@@ -279,9 +279,9 @@ Resins = dict[str, Material]
 
 
 def elastomers(library: Library, casting: bool = False) -> Resins:
-    """Every printed elastomer of a library, by name; with ``casting`` those that are cast as well.
+    """Every printed elastomer of a library by name; with ``casting`` also those that are cast.
 
-    A cast design needs both: the paper measured only printed ones, and the model's error is taken from them.
+    A cast design needs both: the paper measured only printed ones, from which the model's error is taken.
     """
     materials = library.all("materials", Material)
     soft = {name: material for name, material in materials.items() if material.kind == "elastomer"}

@@ -32,10 +32,9 @@ _NAMED_BY_FILE = ("designs", "specimens", "calibrations")
 
 
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles of files by group; ``kind`` is one group, such as designs or materials, or None for all.
-
-    The entry of a file that cannot be read has an empty title, and ``file`` and ``error``: its path and what is wrong.
-    """
+    """Names and titles of files by group; ``kind`` is one group, such as designs or materials, or None for all. Parts
+    and examples have a ``kind`` too. A file that cannot be read has an empty title, its path as ``file`` and the
+    problem as ``error``. Raises InputError for an unknown group."""
     if kind is not None and kind not in _GROUPS:
         group = next((group for group, kinds in _GROUPS.items() if kind in kinds), None)
         remedy = None if group is None else f"they are listed under {group}"
@@ -58,7 +57,7 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
 
 
 def _read(library: Library, kind: str, name: str) -> dict[str, str]:
-    """Entry of a file: its title; or, if it cannot be read, an empty title, its path and the error."""
+    """Title of a file; or, if it cannot be read, an empty title, its path as ``file`` and the ``error``."""
     path = library.paths(kind)[name]
     try:
         if kind in _NAMED_BY_FILE:
@@ -85,7 +84,7 @@ def _title(thing: Any) -> str:
 
 
 def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
-    """The design that a campaign names, as a command takes it, or None. Raises InputError if it does not exist."""
+    """Design that a campaign names, as a command takes it; None without one. Raises InputError if it is unknown."""
     name = design_of(campaign, folder)
     if name is not None:
         try:

@@ -64,7 +64,7 @@ def _slopes(x: Array, y: Array) -> Array:
 
 
 def _end(step: Array, rise: Array) -> float:
-    """One-sided slope at an end, three points, kept monotone."""
+    """Slope at an end from three points, one-sided, limited so that the curve stays monotone."""
     slope = float(((2 * step[0] + step[1]) * rise[0] - step[0] * rise[1]) / (step[0] + step[1]))
     if slope * rise[0] <= 0:
         return 0.0
@@ -83,7 +83,7 @@ _FINE = 2001
 
 @dataclass(frozen=True)
 class ResolvedMixingCurve:
-    """A curve with its moduli resolved; arrays (n,) over its points. ``spread`` is NaN if none was measured."""
+    """A mixing curve with arrays (n,) over its points: modulus, spread (MPa) and elongation (%), NaN if unknown."""
 
     curve: MixingCurve
     fraction: Array
@@ -107,7 +107,7 @@ class ResolvedMixingCurve:
         return float(np.floor(1e4 * at[max(int(np.argmax(stiff)) - 1, 0)]) / 1e4)
 
     def stiffest_at(self, fraction: Array) -> Array:
-        """Greatest modulus in MPa: of the band of an assumed curve, else of the curve itself."""
+        """Greatest modulus in MPa: the upper end of an assumed curve's band, else the curve itself."""
         return self.band_at(fraction)[1] if self.curve.is_assumed else self.modulus_at(fraction)
 
     def band_at(self, fraction: Array) -> tuple[Array, Array]:
@@ -122,7 +122,7 @@ class ResolvedMixingCurve:
         return np.minimum(low, middle), np.maximum(high, middle)
 
     def spread_at(self, fraction: Array) -> Array:
-        """Standard deviation in MPa, by linear interpolation of its share of the modulus; NaN if one is unknown."""
+        """Standard deviation in MPa, its share of the modulus interpolated linearly; NaN next to an unknown one."""
         return np.asarray(np.interp(fraction, self.fraction, self.spread / self.modulus) * self.modulus_at(fraction))
 
     def elongation_at(self, fraction: Array) -> Array:
@@ -144,7 +144,7 @@ def mixing(
 ) -> ResolvedMixingCurve:
     """The mixing curve of two base resins: the one named ``curve``, else the one in use.
 
-    Raises InputError if there is none, if it is of another pair, and if its modulus falls with the fraction.
+    Raises InputError if there is none, if it is of another pair, or if its modulus does not rise with the fraction.
     """
     paths = library.paths("mixing")
     if f"{soft}+{stiff}" not in paths:
@@ -189,7 +189,7 @@ def _key(content: MixingCurve, curve: str | None, file: str | None, key: str | N
 
 
 def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: str) -> tuple[float, float, float]:
-    """Modulus, its spread and the elongation at break of a point; NaN for an unknown one."""
+    """Modulus and its spread (MPa) and elongation at break (%) of a point; spread and elongation NaN if unknown."""
     if point.material is None:
         assert point.shear_modulus_MPa is not None
         spread, break_percent = point.shear_modulus_spread_MPa, point.elongation_at_break_percent
@@ -222,8 +222,8 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
 def mixed_material(
     grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material", shape: DomeShape | None = None
 ) -> Material:
-    """The material of a grade. If its mix varies, the modulus is the mean over the wall of a ``shape`` (None: the usual
-    one), and ``along`` holds its course along the arc.
+    """The material of a grade. If its mix varies, the modulus is the mean over the wall of a ``shape`` (None: a
+    hemisphere), and ``along`` holds the moduli along the arc.
 
     Raises InputError for resins without a curve, for fractions beyond its last point, and for a mix that is stiffer or
     denser than a membrane may be.
@@ -259,7 +259,7 @@ def mixed_material(
 
 
 def _check_soft(grade: Grade, law: ResolvedMixingCurve, fraction: Array, file: str | None, key: str) -> None:
-    """Raise InputError where the mix, or the band of its modulus, is stiffer somewhere than a membrane may be."""
+    """Raise InputError if the modulus of the mix, or its upper bound, is anywhere more than a membrane may have."""
     end = law.stiffest_at(fraction)
     worst = int(np.argmax(end))
     problem = elastomer_modulus_problem(float(end[worst]))
@@ -278,7 +278,7 @@ def _check_soft(grade: Grade, law: ResolvedMixingCurve, fraction: Array, file: s
 def _by_curves(
     grade: Grade, library: Library, used: ResolvedMixingCurve, fraction: Array, weight: Array
 ) -> list[dict[str, Any]]:
-    """The mix by every curve of the pair, the softest first; beyond a curve's last point the modulus there."""
+    """`MixByCurve` data of each curve of the pair, the softest first; beyond its last point its modulus is constant."""
     names = {} if used.curve.curves is None else used.curve.curves.by_name
     laws = {name: mixing(grade.from_, grade.to, library, curve=name) for name in names}
     entries, last = [], float(used.fraction[-1])
@@ -297,7 +297,7 @@ def _by_curves(
 
 
 def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> Quantity:
-    """Mean modulus over the wall; with the band of an assumed curve, else the spread of a measured one.
+    """Mean modulus over the wall, with the band of an assumed curve, or the spread of a measured one if it is known.
 
     The whole wall is at the same end of the band: all of it has the error of the one curve.
     """
@@ -330,7 +330,7 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
 
 
 def _elongation(law: ResolvedMixingCurve, fraction: Array) -> Quantity | None:
-    """Least elongation at break along the arc, where the wall tears first; None if unknown."""
+    """Least elongation at break along the arc, %, where the wall tears first; None if unknown."""
     least = float(law.elongation_at(fraction).min())
     if not np.isfinite(least):
         return None

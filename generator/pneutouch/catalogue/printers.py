@@ -11,7 +11,7 @@ from pneutouch.spec.printer import Printer
 
 
 def makers(material: Material, library: Library) -> dict[str, Printer]:
-    """The profiles that make a material, by name; files that are not valid are passed over, as `list` does."""
+    """The profiles that make a material, by name; invalid files are left out."""
     printers = library.readable("printers", Printer)
     return {name: one for name, one in printers.items() if one.mode_for(material) is not None}
 
@@ -34,7 +34,7 @@ def uncast(printer: Printer, material: Material, file: str) -> InputError:
 def cannot_run(
     printer: Printer, name: str | None, material: Material, library: Library | None, setting: str, **place: Any
 ) -> InputError:
-    """Error for a material that a profile does not make.
+    """Error for a material that a profile does not make; with a ``library`` it names profiles that do.
 
     ``name`` is the material's name, None for a mix; ``setting`` is the setting that takes another profile, such as
     ``print.profile``; ``place`` holds file, key and value of what was given.
@@ -48,7 +48,7 @@ def cannot_run(
 
 
 def made_by(material: Material, library: Library, setting: str) -> str:
-    """Remedy that names the profiles that make a material, with their processes."""
+    """Remedy that names the profiles that make a material, with their processes; if none does, what to add."""
     profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
     if not profiles:
         casts = next(

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 class ResolvedDesign:
     """A design with everything that it names. ``where`` is the file as the user gave it, for messages.
 
-    ``mould_printer`` and ``mould_material`` are None if the membrane is printed, not cast.
+    ``calibration`` and ``gauge`` are None if none is named, the mould's printer and material if the membrane is
+    printed.
     """
 
     name: str
@@ -67,7 +68,7 @@ class ResolvedDesign:
 
     @property
     def hole_undersize(self) -> float:
-        """Difference in diameter, mm, by which the connector's printer makes holes too small; fits are drawn wider."""
+        """Difference in diameter, mm, by which the connector's printer makes holes too small, to be added to bores."""
         return self.connector_printer.hole_undersize_mm.nominal
 
     @property
@@ -82,10 +83,9 @@ class ResolvedDesign:
 
     @property
     def fit_clearance(self) -> float:
-        """Clearance per side in mm between two bodies: the printers' stated accuracies added up.
-
-        The first body is the membrane, or the ring it is cast around (from the connector's printer); the other the
-        seat."""
+        """Clearance per side in mm between the connector and the body that its seat holds: the sum of their printers'
+        stated accuracies. That body is the membrane, or the ring it is cast around, which the connector's printer
+        makes."""
         held = self.connector_printer if isinstance(self.seat, CastRing) else self.printer
         return held.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
 
@@ -100,7 +100,7 @@ class DesignSource:
 
     @staticmethod
     def of(design: str | DesignSource, library: Library) -> DesignSource:
-        """A design given by name or path, or as ``DESIGN@CALIBRATION``; a source is returned as it is."""
+        """Source of a design by name, by path or as ``DESIGN@CALIBRATION``; of a source itself. Raises InputError."""
         if isinstance(design, DesignSource):
             return design
         plain, calibration = split_calibration(design, library)
@@ -132,7 +132,7 @@ DEFAULT = DesignSource("default", {}, "the default design")
 def load_scene(
     design: str | DesignSource, changes: Changes | None = None, library: Library | None = None
 ) -> ResolvedDesign:
-    """Load a design, given by name, by path or as a source, change fields and resolve its names."""
+    """Load a design, given by name, by path or as a source, change fields and resolve its names. Raises InputError."""
     library = library or Library.default()
     source = DesignSource.of(design, library)
     return _resolved(source.name, source.where, source.changed(changes or {}), library)
@@ -188,7 +188,7 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
 def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
     """Check the rules between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
 
-    With the ``library`` of its names, errors also state which profiles make a material.
+    With the ``library`` that the scene was resolved with, errors also state which profiles make a material.
     """
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")
@@ -311,7 +311,7 @@ def _tube_of(design: DesignFile, where: str, library: Library) -> Tube:
 
 
 def _mount_of(design: DesignFile, where: str, library: Library) -> AnyMount:
-    """The mount that the design names; a sleeve is made for the finger that the design gives."""
+    """The mount that the design names; a sleeve of the finger diameter stated. Raises InputError if it is no sleeve."""
     chosen, finger = design.connector.mount, design.connector.finger_diameter_mm
     mount: AnyMount = library.load("mounts", chosen, file=where, key="connector.mount")
     if finger is None:

@@ -26,8 +26,8 @@ _MOST_VARIANCE = {
     "contact_offset_mm": 100.0,
     "friction": 4.0,
 }
-"""Largest variances on a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm, 2. A
-fit with more has not seen the parameter, and figures by it would not be finite."""
+"""Greatest variances in a covariance, in the units of `SensorCalibration`: standard deviations of a factor of 7, 10 mL,
+10 mm and 2. A fit with more has not seen the parameter, and figures by it would not be finite."""
 
 _BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 
@@ -116,7 +116,7 @@ class CalibratedResponse(Table):
 class SensorCalibration(Table):
     """A calibration file.
 
-    ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume), mm (offset) and 1 (friction).
+    ``covariance`` is of the logarithms of modulus (MPa) and wall (mm), of dead volume (mL), offset (mm) and friction.
     """
 
     format: str = Field(description="Format of the file and its version.")
@@ -178,17 +178,17 @@ class SensorCalibration(Table):
         return self
 
     def value(self, key: ParameterKey) -> float:
-        """A parameter's value, in the unit of its key."""
+        """Value of the parameter ``key``, in the unit of the key."""
         return next(parameter.value for parameter in self.parameters if parameter.key == key)
 
     @property
     def covered(self) -> tuple[ParameterKey, ...]:
-        """Parameters with a row of the covariance, in its order."""
+        """Keys of the parameters that have a row in the covariance, in the order of the rows."""
         return tuple(parameter.key for parameter in self.parameters if parameter.covered)
 
     @property
     def remaining_year(self) -> float:
-        """Share of the first year that lay before the sensor when it was measured."""
+        """Share, 0 to 1, of the first year after printing that was still to come when it was measured."""
         return max(0.0, 1.0 - self.source.age_days / 365.0)
 
     def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float, shape: str) -> str | None:

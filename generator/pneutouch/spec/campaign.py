@@ -1,4 +1,4 @@
-"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file by the runs."""
+"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file beside the runs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ RunKind = Literal[PlannedKind, "hand"]
 """Kind of a run; a press by hand has no travel."""
 
 AS_DESIGNED = "as-designed"
-"""Name in place of a resin's: the membrane as the design has it, which may be a mix that no file names."""
+"""Name in place of a resin's: the membrane as the design has it, perhaps a mix that no file names."""
 
 
 class Column(Table):
@@ -55,9 +55,8 @@ def _column(name: str, unit: str) -> Column:
 
 
 class ColumnMap(Table):
-    """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed.
-
-    A channel that is left out is the column of the name below, else the one whose header gives channel and unit."""
+    """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed. A channel
+    left out is the column of its default name, else the one whose header states channel and unit."""
 
     time: Column = _column("time_s", "s")
     position: Column = _column("position_mm", "mm")
@@ -94,7 +93,7 @@ class FileFormat(Table):
 
 
 def merged_columns(under: ColumnMap, over: ColumnMap | None) -> ColumnMap:
-    """Columns of ``under``, with those of ``over`` in their place."""
+    """Columns of ``under``, replaced by those that ``over`` states; None: by none."""
     both = [one for one in (under, over) if one is not None]
     return ColumnMap.model_validate(
         {key: getattr(one, key).model_dump() for one in both for key in one.model_fields_set}
@@ -102,7 +101,7 @@ def merged_columns(under: ColumnMap, over: ColumnMap | None) -> ColumnMap:
 
 
 def merged_format(under: FileFormat, over: FileFormat | None) -> FileFormat:
-    """File format ``under`` with the values of ``over`` in place of its own."""
+    """File format ``under``, with the values that ``over`` states in place of its own; None: without any."""
     both = [one.model_dump(exclude_none=True) for one in (under, over) if one is not None]
     return FileFormat.model_validate({key: value for one in both for key, value in one.items()})
 
@@ -227,7 +226,7 @@ CAMPAIGN = "campaign.toml"
 
 
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
-    """The campaign of a folder or of its campaign file, whose runs lie in that folder. Raises InputError."""
+    """Campaign, and folder of its runs, by folder or campaign file. Raises InputError, also for a run outside."""
     path = data / CAMPAIGN if data.is_dir() else data
     if data.is_dir() and not path.exists():
         raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
@@ -238,7 +237,7 @@ def campaign_of(data: Path) -> tuple[Campaign, Path]:
 
 
 def design_of(campaign: Campaign, folder: Path) -> str | None:
-    """The design that a campaign names, as a command takes it; None if it names none. Raises InputError."""
+    """Design that a campaign in ``folder`` names, as a command takes it; None if it names none. Raises InputError."""
     if campaign.design is None:
         return None
     return design_inside(folder, campaign.design, file=folder / CAMPAIGN, key="design")

@@ -22,7 +22,7 @@ SIZES: dict[ContactKind, tuple[str, ...]] = {
 """Keys that each object needs; those of the plate have defaults."""
 
 LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
-"""Objects that are straight across the plane of symmetry, in place of bodies of revolution."""
+"""Objects that lie straight across the plane of symmetry; the others are bodies of revolution."""
 
 _MOVABLE: tuple[ContactKind, ...] = ("plate", "ball", *LYING)
 """Objects that can stand off the axis and move sideways."""
@@ -42,7 +42,7 @@ def _coefficient(value: float) -> float:
 
 
 def _corners(corners: list[list[float]]) -> list[list[float]]:
-    """Lists of r, z and the radius of the corner, inside the greatest object."""
+    """Check a profile's points [r, z] or [r, z, corner radius], mm. Raises ValueError for too many or too large."""
     if not 2 <= len(corners) <= _MOST_CORNERS:
         raise ValueError(f"profile_mm has {len(corners)} points; give 2 to {_MOST_CORNERS}")
     for index, corner in enumerate(corners):
@@ -188,18 +188,18 @@ class ContactTable(Table):
 
     @property
     def off_axis(self) -> dict[str, float | str]:
-        """The keys that keep the scene from being axisymmetric, and their values; empty if it is."""
+        """Keys, with values, that make the contact other than axisymmetric; empty if it is axisymmetric."""
         keys = ("offset_mm", "tilt_deg", "shear_mm", *(("object",) if self.is_lying else ()))
         return {key: getattr(self, key) for key in keys if getattr(self, key)}
 
     @property
     def _article(self) -> str:
-        """The object with its article."""
+        """Object with its article: ``a plate``, ``an edge``."""
         return f"{'an' if self.object == 'edge' else 'a'} {self.object}"
 
     @property
     def is_lying(self) -> bool:
-        """True if the object is straight across the plane of symmetry."""
+        """True for an edge or a cylinder, which lies straight across the plane of symmetry."""
         return self.object in LYING
 
     @property
@@ -219,12 +219,12 @@ class ContactTable(Table):
 
     @property
     def kind_of_place(self) -> str:
-        """Adjective for the place of contact, in words before the noun."""
+        """Adjective for the place of contact: ``central`` or ``off-axis``."""
         return "off-axis" if self._stand else "central"
 
     @property
     def where(self) -> str:
-        """Place to press, in words after the object."""
+        """Place of contact as an adverb: ``centrally``, ``2 mm off the axis``."""
         return self._stand or "centrally"
 
     @property
@@ -234,12 +234,12 @@ class ContactTable(Table):
 
     @property
     def is_atlas_plate(self) -> bool:
-        """True for the contact of membrane and atlas: a central plate with its usual rim, without friction."""
+        """True for the contact of the models membrane and atlas: a central plate, usual rim, no friction."""
         return self.is_plate and self.plate_rim_mm is None and not self.friction and not self.off_axis
 
     @property
     def label(self) -> str:
-        """The object in words, with its sizes; those of a plate are not all here."""
+        """Object in words, with its sizes; a plate without them."""
         if self.object == "ball":
             return f"ball of {self.ball_radius_mm:g} mm radius"
         if self.object == "edge":
@@ -266,9 +266,9 @@ class ContactTable(Table):
 
     @property
     def words(self) -> str:
-        """Object, friction and a place off the axis in words."""
+        """Object, friction and, if it is not axisymmetric, place of contact in words."""
         return ", ".join([self.label, self.hold, *([self.place] if self.off_axis else [])])
 
     def sizes(self) -> dict[str, Any]:
-        """The keys that shape the object and their values, without those of other objects."""
+        """Keys in `SIZES` of this object with their values; empty for a plate."""
         return {key: getattr(self, key) for key in SIZES[self.object]}

@@ -1,6 +1,6 @@
 """The results file: a lab's readings of its coupons, one TOML with one table a coupon and material, printer or design.
 
-An empty list means that it was not measured. A list with readings has at least two, so that a spread can be computed.
+An empty list means not measured. Else there are at least two readings, so that there is a spread; in a curve three.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LEAST_READINGS = 2
 
 
 def _readings(low: float, high: float, unit: str, least: int = LEAST_READINGS) -> AfterValidator:
-    """None at all, or ``least`` readings from ``low`` to ``high``."""
+    """Check of a list: empty, or at least ``least`` readings from ``low`` to ``high``."""
 
     def check(values: list[float]) -> list[float]:
         for place, value in enumerate(values, start=1):
@@ -47,7 +47,7 @@ CurveReadings = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
 
 
 class Puck(Table):
-    """[puck.MATERIAL]: hardness readings of all pucks; mass, diameter and thickness one a puck."""
+    """[puck.MATERIAL]: hardness readings of all pucks; one mass, diameter and thickness for each puck."""
 
     shore_a: Shore = Field(default_factory=list, description="Readings on the Shore A scale.")
     shore_d: Shore = Field(default_factory=list, description="Readings on the Shore D scale.")
@@ -137,7 +137,7 @@ class GaugeSize(Table):
 
     @property
     def sound(self) -> bool | None:
-        """True if it came out; None if nothing is stated."""
+        """True if it came out or was measured; None if nothing is stated."""
         return True if self.measured_mm else self.came_out
 
 
@@ -231,7 +231,7 @@ def _explained(detail: Any) -> str:
 
 
 def _owner(path: list[str]) -> type[Table]:
-    """The table that a path of keys leads to; names of materials, printers and designs are passed over."""
+    """Model of the table at a path of keys; names of materials, printers and designs are skipped."""
     owner: type[Table] = CouponResults
     for step in path:
         field = next((name for name, info in owner.model_fields.items() if step in (name, info.alias)), None)

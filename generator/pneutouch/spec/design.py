@@ -260,7 +260,7 @@ CALIBRATION = "calibration"
 """Key of a design file, outside its tables, that names a calibration."""
 
 NO_CALIBRATION = "none"
-"""Stands for no calibration, over one that the design file names."""
+"""Name that stands for no calibration; as a change it overrides the one that a design file names."""
 
 
 class DesignFile(SparseTable):
@@ -290,7 +290,7 @@ class DesignFile(SparseTable):
     @model_validator(mode="before")
     @classmethod
     def _one_plate(cls, content: Any) -> Any:
-        """The plate's diameter, stated in one of two tables, stands in both."""
+        """Copy the plate's diameter from [contact] into [indentation]. Raises FieldsError if they differ."""
         if not isinstance(content, dict):
             return content
         tables = [content.get("indentation", {}), content.get("contact", {})]
@@ -312,12 +312,12 @@ class DesignFile(SparseTable):
 
     @property
     def calibration_name(self) -> str | None:
-        """Name of the calibration, None without one."""
+        """Name of the calibration; None if none is named, or ``none`` is."""
         return None if self.calibration == NO_CALIBRATION else self.calibration
 
     @property
     def depth_mm(self) -> float:
-        """Plate travel: as given, else three quarters of the dome's height inside, as of R0 (paper, section 3-B)."""
+        """Plate travel: as given, else 0.75 of the dome's inner height (R0 in the paper, section 3-B)."""
         given = self.indentation.depth_mm
         return 0.75 * self.membrane.dome.height if given is None else given
 

@@ -15,11 +15,11 @@ from pneutouch.spec.values import Quantity
 from pneutouch.wording import counted
 
 _MOST_KEYS = 8
-"""Keys that a message shows: a table of more is looked up."""
+"""Greatest number of keys that a message shows as a table's form; a larger table is looked up."""
 
 
 def table_form(owner: type[BaseModel] | None, key: str) -> str:
-    """The form of the table ``key`` of ``owner`` with its needed keys; empty if these are none or too many."""
+    """Form ``{ key = ... }`` of the table ``key`` of ``owner`` with required keys; empty without any, or too many."""
     table = None if owner is None else table_of(owner, key)
     if table is None:
         return ""
@@ -37,7 +37,7 @@ _FORMS: dict[typing.Any, str] = {str: '"..."'}
 
 
 def explained(model: type[BaseModel], detail: Any, where: str | None) -> InputError:
-    """The error for one of pydantic's: the key, the value, and what would be right."""
+    """InputError for ``detail``, an error of pydantic on ``model``: key, value and remedy; ``where``: the file."""
     # Names in angle brackets distinguish the kinds of a value that may be of several; they are no keys.
     path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
     owner: type[BaseModel] | None = model
@@ -68,7 +68,7 @@ def explained(model: type[BaseModel], detail: Any, where: str | None) -> InputEr
 
 
 def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """Problem with a value of another kind or beyond its bounds, and the right way to write it if that is known."""
+    """Problem with a value of the wrong type or beyond its bounds, and the remedy, None if it is not known."""
     kind, right = _expected(detail), _right(owner, path)
     if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
         kind = f"{kind}such as {form}, "
@@ -88,12 +88,12 @@ def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tupl
 
 
 def _is_sentence(right: str) -> bool:
-    """True if the right value is described by the help of a field without bounds, a sentence of its own."""
+    """True if a description of a valid value is a sentence (the help of a field without bounds), not a phrase."""
     return right[:1].isupper() or right.startswith("one ")
 
 
 def _bounds(detail: Any) -> str:
-    """The bounds of a number or a text that pydantic names, in words; empty if it names none."""
+    """Bounds of a number or a text that an error of pydantic names, in words; empty if it names none."""
     words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
     given = detail.get("ctx", {})
     numbers = [f"{word} {given[key]:g}" for key, word in words.items() if isinstance(given.get(key), int | float)]
@@ -114,7 +114,7 @@ def _label(steps: Iterable[int | str]) -> str:
 
 
 def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
-    """Lines to add for a missing key: a table in its form, and its meaning."""
+    """Remedy for a missing key: the form of its table, if it is one, and its meaning."""
     right, form = _right(owner, path) or f"a table [{'.'.join(path)}]", table_form(owner, path[-1])
     if form and owner is not None and entries_of(owner, path[-1]) is not None:
         form = f"[{form}]"
@@ -125,12 +125,12 @@ def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
 
 
 def _keys(owner: type[BaseModel]) -> list[str]:
-    """The keys of a table as they are written."""
+    """Keys of a table as they are written in a file."""
     return [field.alias or key for key, field in owner.model_fields.items()]
 
 
 def _expected(detail: Any) -> str:
-    """The kind of value a field takes, where the value is of the wrong kind altogether."""
+    """Type that a field takes, in words, for an error on the type of a value; empty for other errors."""
     kinds = {
         "float_type": "a number ",
         "int_type": "a whole number ",
@@ -149,11 +149,11 @@ def _expected(detail: Any) -> str:
 
 
 _OF_LISTS = ("list_type", "too_short", "too_long")
-"""Types of pydantic's errors on a list."""
+"""Types of pydantic's errors on a list: no list, too few entries, too many."""
 
 
 def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """Problem with a value in place of a list, and the same written as a list if that is known."""
+    """The right list in words for an error of `_OF_LISTS`, and a remedy: the value written as a list, else None."""
     table = owner if owner is not None and path[-1] in owner.model_fields else None
     within = next((k for k, step in enumerate(reversed(detail["loc"])) if not isinstance(step, int)), 0)
     held = None if table is None else entries_of(table, path[-1], within)
@@ -172,14 +172,14 @@ def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) 
 
 
 def _is_entry(table: type[BaseModel], key: str, value: Any) -> bool:
-    """True if a list ``key`` of this one value would be right, as far as its declaration says."""
+    """True if the list ``[value]`` would be valid for ``key``, as far as the declaration states."""
     known = declaration(table, key)
     low, high = (-math.inf if known.low is None else known.low), (math.inf if known.high is None else known.high)
     return is_one_of_list(table, key, value) and (isinstance(value, str) or low <= value <= high)
 
 
 _ANY = "a valid value"
-"""Description of the right value if no declaration has one."""
+"""Description of a valid value if no declaration has one."""
 
 
 def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
@@ -225,7 +225,7 @@ _WIDEST = 100
 
 
 def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
-    """The problem with its line, the line itself, and a caret under the column where reading stopped."""
+    """Problem with its line number, the line itself, and a caret under the column where reading stopped."""
     place = _PLACE.match(str(error))
     if place is None:
         return f"not valid TOML: {error}"
@@ -239,7 +239,7 @@ def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
 
 
 def _plain(problem: str) -> str:
-    """The parser's words as a user of the file would put them."""
+    """The parser's message in words that a user of the file understands; unchanged if there are none."""
     if problem in _PLAIN:
         return _PLAIN[problem]
     return next((plain for start, plain in _BEGINNINGS.items() if problem.startswith(start)), problem)

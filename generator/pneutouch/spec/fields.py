@@ -1,7 +1,6 @@
-"""Declaration of a parameter: once, with unit, bounds, default and help.
+"""Declarations of parameters, each once, with unit, bounds, default and help; and the base of every TOML table.
 
-The command line, the commented design file, the datasheet's table and the error messages read the
-declaration; nothing repeats it.
+Command line, commented design file, datasheet's table and error messages all read the declaration.
 """
 
 import types
@@ -23,7 +22,7 @@ class Table(BaseModel):
 
 
 class SparseTable(Table):
-    """A table whose dumps leave keys out at their default: what is hashed reads as before there were these keys."""
+    """A table whose dumps omit keys of ``left_out`` at their default: their hash does not depend on unused keys."""
 
     left_out: ClassVar[tuple[str, ...]] = ()
 
@@ -36,16 +35,16 @@ class SparseTable(Table):
 
 @dataclass(frozen=True, slots=True)
 class OneOf:
-    """Annotation of a text that is one of ``names``: those of a table in the code, read whenever they are asked for."""
+    """Annotation of a text that must be one of the names that ``names()`` returns when it is checked."""
 
     names: Callable[[], Iterable[str]]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], CoreSchema]) -> CoreSchema:
-        """Refuse another text as a literal is refused."""
+        """Core schema that refuses any other text, with the error that pydantic gives for a Literal."""
         return no_info_after_validator_function(self._checked, handler(source))
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: Any) -> dict[str, Any]:
-        """The schema with the names."""
+        """JSON schema with the names as its ``enum``."""
         return {**handler(core), "enum": list(self.names())}
 
     def _checked(self, value: str) -> str:
@@ -57,7 +56,7 @@ class OneOf:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """The declaration of a field: ``key`` with ``unit``, bounds, ``default`` and ``help``."""
+    """Declaration of the field ``key``. ``low``, ``high``: None without bounds; ``registry``: None if it is no name."""
 
     key: str
     unit: str
@@ -70,7 +69,7 @@ class Declaration:
 
     @property
     def right(self) -> str:
-        """Description of a right value, in words: ``a number from 1 to 100 mm``."""
+        """Description of a valid value: ``from 1 to 100 mm``, ``one of the materials``, else the help."""
         if self.low is not None:
             unit = f" {self.unit}" if self.unit else ""
             return f"from {self.low:g} to {self.high:g}{unit}"
@@ -78,7 +77,7 @@ class Declaration:
 
 
 class FieldsError(ValueError):
-    """Problem with several fields of a table, or ``table.key`` of a file: their names."""
+    """Error on fields of a table; ``fields`` holds their keys, as ``table.key`` if the table is a whole file."""
 
     def __init__(self, problem: str, *fields: str) -> None:
         super().__init__(problem)
@@ -86,7 +85,7 @@ class FieldsError(ValueError):
 
 
 class EntryError(ValueError):
-    """Problem with one entry of a list: its ``index`` and ``value``."""
+    """Error on one entry of a list, with its ``index`` from 0 and its ``value``."""
 
     def __init__(self, problem: str, index: int, value: Any) -> None:
         super().__init__(problem)
@@ -94,13 +93,13 @@ class EntryError(ValueError):
 
 
 def number(default: float | None, *, unit: str, low: float, high: float, help: str) -> Any:
-    """Declare a number, in ``unit``, from ``low`` to ``high`` inclusive."""
+    """Declare a number in ``unit``, from ``low`` to ``high`` inclusive; a default of None makes it optional."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
     return Field(default=default, ge=low, le=high, description=help, json_schema_extra=extra)
 
 
 def numbers(default: list[float], *, unit: str, low: float, high: float, help: str) -> Any:
-    """Declare a non-empty list of numbers; each entry obeys the bounds."""
+    """Declare a list of 1 to 50 numbers; the bounds are declared only, a validator of the field must enforce them."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
     return Field(
         default=default, min_length=1, max_length=50, description=help, json_schema_extra=extra, validate_default=True
@@ -133,7 +132,7 @@ def declaration(model: type[BaseModel], key: str) -> Declaration:
 
 
 def extra_of(model: type[BaseModel], key: str) -> Mapping[str, Any]:
-    """The entries of a field's declaration beyond pydantic's own."""
+    """Entries of a field's declaration beyond pydantic's own, such as unit and bounds; empty without any."""
     extra = model.model_fields[key].json_schema_extra
     return extra if isinstance(extra, dict) else {}
 
@@ -144,7 +143,7 @@ def declarations(model: type[BaseModel]) -> list[Declaration]:
 
 
 def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
-    """Return the model of the sub-table ``key``, or None if ``key`` is a plain value."""
+    """Model of the table ``key``, or of the tables in the list ``key``; None for a plain value or an unknown key."""
     info = model.model_fields.get(key)
     if info is None:
         return None
@@ -158,9 +157,9 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
 
 
 def entries_of(model: type[BaseModel], key: str, within: int = 0) -> str | None:
-    """Kind of the entries of the list ``key``: numbers, names, texts, tables or lists; None if it is no list.
+    """Kind of the entries of the list ``key``: numbers, names, texts, tables or lists; None if it is no list, or mixed.
 
-    ``within`` counts the lists around the one that is meant: 1 for a list in the list ``key``.
+    ``within`` is the depth of the list that is meant: 0 for ``key`` itself, 1 for a list inside it.
     """
     held = _kinds(model.model_fields[key].annotation)
     for _ in range(within + 1):
@@ -178,7 +177,7 @@ def entries_of(model: type[BaseModel], key: str, within: int = 0) -> str | None:
 
 
 def _kinds(annotation: Any) -> list[Any]:
-    """The types of an annotation without its bounds and without None; words stand for str."""
+    """Types that an annotation allows, without None and bounds; for a Literal the types of its words."""
     origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         return _kinds(parts[0])

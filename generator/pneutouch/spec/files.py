@@ -1,4 +1,4 @@
-"""Reading files that others wrote: never a device or a pipe, never without a bound, never outside a folder."""
+"""Reading of files that others wrote (plain, of bounded size, inside a folder), and the mark on files of a command."""
 
 import stat
 from os import PathLike
@@ -7,11 +7,11 @@ from pathlib import Path
 from pneutouch.errors import InputError
 
 MOST_BYTES = 1_000_000
-"""A file that a person writes is smaller by far."""
+"""Usual limit on the size of a file, bytes: what a person writes is far smaller."""
 
 
 def read_bytes(path: Path, most: int = MOST_BYTES, kind: str = "TOML file") -> bytes:
-    """Content of a plain file of at most ``most`` bytes. Raises InputError for all else, which states the ``kind``."""
+    """Content of a plain file of at most ``most`` bytes. Raises InputError, with the expected ``kind``, for others."""
     size = check_plain(path, kind)
     if size > most:
         raise oversized(path, size, most, kind)
@@ -27,7 +27,7 @@ def read_bytes(path: Path, most: int = MOST_BYTES, kind: str = "TOML file") -> b
 
 
 def oversized(path: Path, size: int, most: int, kind: str) -> InputError:
-    """The error of a file of ``size`` bytes, of a ``kind`` that has at most ``most``."""
+    """Error for a file of ``size`` bytes where a file of its ``kind`` has at most ``most`` bytes."""
     limit = f"{most / 1e6:g} MB"
     if most % 2**10 == 0:
         limit = f"{most >> 20} MiB" if most % 2**20 == 0 else f"{most >> 10} KiB"
@@ -35,7 +35,7 @@ def oversized(path: Path, size: int, most: int, kind: str) -> InputError:
 
 
 def check_plain(path: Path, kind: str) -> int:
-    """The size of a plain file in bytes. Raises InputError for a folder, a device, a pipe, or nothing."""
+    """Size of a plain file in bytes. Raises InputError for a folder, device or pipe, and if there is no such file."""
     try:
         status = path.stat()
     except FileNotFoundError:
@@ -51,7 +51,7 @@ def check_plain(path: Path, kind: str) -> int:
 
 
 def is_file(path: Path) -> bool:
-    """True if there is a file of this name; False, too, for a name that no file can have."""
+    """True if there is a file of this name; False also for a name that no file can have, such as one too long."""
     try:
         return path.is_file()
     except (OSError, ValueError):
@@ -59,7 +59,7 @@ def is_file(path: Path) -> bool:
 
 
 def exists(path: Path) -> bool:
-    """True if there is anything of this name; False, too, for a name that no file can have."""
+    """True if a file or folder of this name exists; False also for a name that none can have."""
     try:
         return path.exists()
     except (OSError, ValueError):
@@ -67,10 +67,10 @@ def exists(path: Path) -> bool:
 
 
 def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> Path:
-    """The path of ``name`` in ``folder``. Raises InputError if it leads out of the folder, by a link too, or cannot be
-    read.
+    """Path of ``name`` in ``folder``. Raises InputError if it is absolute, leads out of the folder, be it by a link, or
+    cannot be read.
 
-    ``file`` and ``key`` state where the name was written: whoever wrote it decides on the files of its folder alone.
+    ``file`` and ``key``, where the name was written, stand in the error: a file may name only files of its own folder.
     """
     path = folder / name
     try:
@@ -88,9 +88,9 @@ def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> P
 
 
 def design_inside(folder: Path, design: str, *, file: str | PathLike[str], key: str) -> str:
-    """A design that a file in ``folder`` names: a name of the catalogue as it is, a path as one `inside` the folder.
+    """Design that a file in ``folder`` names: a catalogue name unchanged, a path as `inside` returns it.
 
-    A calibration after the file's name stays there: ``dome.toml@mine``.
+    A calibration after a path is kept: ``dome.toml@mine``. Raises InputError as `inside` does.
     """
     plain, at, calibration = design.partition("@")
     if at and plain.endswith(".toml"):
@@ -101,12 +101,12 @@ def design_inside(folder: Path, design: str, *, file: str | PathLike[str], key: 
 
 
 def head_of(command: str) -> str:
-    """First words of a text file that ``command`` wrote, and may overwrite while they are there."""
+    """First words of a text file that ``command`` wrote; it may overwrite a file that still begins with them."""
     return f"# Written by pneutouch {command}"
 
 
 def whole_head(command: str, source: str) -> str:
-    """First lines of such a file: what it follows from, and how to keep it."""
+    """First lines of a text file that ``command`` made from ``source``, with a hint on how to keep the file."""
     return (
         f"{head_of(command)} from {source}.\n"
         "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
@@ -114,14 +114,14 @@ def whole_head(command: str, source: str) -> str:
 
 
 def is_of(path: Path, command: str) -> bool:
-    """True if a text file begins as those of ``command``."""
+    """True if a text file begins with the words that `head_of` gives for ``command``."""
     head = head_of(command)
     with path.open(encoding="utf-8", errors="replace") as file:
         return file.read(len(head)) == head
 
 
 def check_of(path: Path, command: str, remedy: str) -> bool:
-    """True if ``command`` wrote the file, False if there is none. Raises InputError for one of somebody else."""
+    """True if ``command`` wrote the file, False if there is none. Raises InputError for a file of other origin."""
     if not (path.exists() or path.is_symlink()):
         return False
     if path.is_file() and not path.is_symlink() and is_of(path, command):

@@ -42,7 +42,7 @@ class GaugeRange(Table):
 
 
 class Transfer(Table):
-    """[transfer]: the output at both ends of the range, straight between; none of a compensated output."""
+    """[transfer]: the output at both ends of the range, linear in between; left out if it is compensated."""
 
     output: Output = Field(description="Output of the gauge.")
     at_low: float | None = Field(default=None, ge=-1e12, le=1e12, description="Output at the low end of the range.")
@@ -125,22 +125,22 @@ class Gauge(Table):
 
     @property
     def is_absolute(self) -> bool:
-        """True if it reads ambient plus gauge pressure."""
+        """True if the gauge reads absolute pressure: ambient plus gauge pressure."""
         return self.reference == "absolute"
 
     def gauge_pressures_kPa(self, ambient_kPa: float) -> tuple[float, float]:
-        """Least and greatest gauge pressure that it reads at an ambient pressure, kPa: of an absolute one less the
-        ambient pressure. The greatest is below 0 where its range ends under the ambient pressure."""
+        """Least and greatest gauge pressure, kPa, that it reads at an ambient pressure: for an absolute gauge its range
+        less the ambient pressure, so that the greatest is negative if the range ends below the ambient pressure."""
         shift_kPa = ambient_kPa if self.is_absolute else 0.0
         return self.range_kPa.low - shift_kPa, self.range_kPa.high - shift_kPa
 
     def pressure_kPa(self, output: float) -> float:
-        """Pressure in the gauge's reference by its output, kPa. Raises ValueError for a compensated output."""
+        """Pressure, kPa, in the gauge's reference for an output. Raises ValueError if the output is compensated."""
         low, high = self._ends()
         return self.range_kPa.low + (output - low) / (high - low) * self.range_kPa.span
 
     def output(self, pressure_kPa: float) -> float:
-        """Output by the pressure in the gauge's reference, kPa. Raises ValueError for a compensated output."""
+        """Output at a pressure, kPa, in the gauge's reference. Raises ValueError if the output is compensated."""
         low, high = self._ends()
         return low + (pressure_kPa - self.range_kPa.low) / self.range_kPa.span * (high - low)
 

@@ -11,7 +11,7 @@ from pneutouch.errors import shown
 from pneutouch.spec.fields import Table
 
 MOST_KNOTS = 12
-"""Knots a grade may have: a wall of a few bending lengths shows no more."""
+"""Greatest number of knots of a grade: a wall of a few bending lengths shows no more."""
 
 
 def _one_or_many(value: Any) -> str:
@@ -66,12 +66,12 @@ class Grade(Table):
 
     @property
     def fractions(self) -> tuple[float, ...]:
-        """The fractions at the knots; one alone of a constant mix."""
+        """Fractions at the knots; one value if ``fraction`` is one number."""
         return (self.fraction,) if isinstance(self.fraction, float) else tuple(self.fraction)
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """The knots; of a constant mix the pole alone."""
+        """Knots from 0 (pole) to 1 (rim), even if not given; (0,) if ``fraction`` is one number."""
         if self.at is not None:
             return tuple(self.at)
         last = max(len(self.fractions) - 1, 1)
@@ -101,7 +101,7 @@ ResinOrMix = Annotated[
 
 
 FROM_CURVE = "mixing curve"
-"""First words of the source of a modulus that a mixing curve gave."""
+"""First words of the ``source`` of a modulus that is computed from a mixing curve."""
 
 
 class MixingPoint(Table):
@@ -164,7 +164,7 @@ class MixingCurveNames(Table):
 
     @property
     def by_name(self) -> dict[str, str]:
-        """The key of a point's fraction, by the name of the curve; the one in use first."""
+        """Key of `MixingPoint` that holds the fraction on a curve, by the curve's name; the one in use first."""
         return {getattr(self, key): key for key in type(self).model_fields}
 
 
@@ -211,7 +211,7 @@ class MixingCurve(Table):
         return self
 
     def _check_ends(self) -> None:
-        """Raise ValueError unless the low fractions, and the high ones, begin with 0 and rise as a curve's do."""
+        """Raise ValueError unless fractions begin with 0 and rise strictly, the low and the high ones."""
         for side in ("low", "high"):
             ends = [getattr(point, side) for point in self.points]
             if ends[0] != 0 or any(b <= a for a, b in pairwise(ends)):
@@ -226,11 +226,11 @@ class MixingCurve(Table):
         return any(point.low < point.high for point in self.points)
 
     def through(self, key: str) -> list[float]:
-        """Fractions of the points on the curve of a key of `MixingCurveNames`."""
+        """Fractions of the points on the curve that ``key`` of `MixingCurveNames` names."""
         side = {"fraction": "fraction", "fraction_low": "low", "fraction_high": "high"}[key]
         return [getattr(point, side) for point in self.points]
 
     @property
     def common_top(self) -> float:
-        """The greatest fraction at which every curve of the file gives a modulus."""
+        """Greatest fraction up to which every curve of the file gives a modulus."""
         return self.points[-1].low

@@ -50,7 +50,7 @@ class Casting(Table):
         return self
 
     def masses_g(self, total_g: float) -> list[float]:
-        """The mass of each part, g, of ``total_g`` of the mixed liquid."""
+        """Mass of each part, g, in ``total_g`` of the mixed liquid."""
         whole = math.fsum(self.parts_by_mass)
         return [total_g * part / whole for part in self.parts_by_mass]
 
@@ -63,7 +63,7 @@ class RelaxationTerm(Table):
 
 
 class Relaxation(Table):
-    """Fall of a resin's modulus after a step of strain, over its first value: 1 - sum of share (1 - exp(-t/time_s))."""
+    """Modulus after a step of strain over the instantaneous one: 1 - sum of share (1 - exp(-t/time_s))."""
 
     terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
     temperature_C: float | None = Field(default=None, description="Temperature of the test, if known.")
@@ -114,7 +114,7 @@ class HyperelasticLaw(SparseTable):
 
 
 _MIX_SUM = 1e-6
-"""Largest difference from one of the sum of the volume fractions of a mix."""
+"""Greatest deviation from 1 that the sum of a mix's volume fractions may have."""
 
 
 class Mix(Table):
@@ -139,7 +139,7 @@ class Mix(Table):
 
 
 class ArcGrading(Table):
-    """A graded membrane along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
+    """A graded membrane along its arc, pole (0) to rim (1): lists of one length, linear between the places."""
 
     arc: list[float] = Field(min_length=2, description="Places along the arc, rising from 0 (pole) to 1 (rim).")
     stiff_fraction: list[float] = Field(min_length=2, description="Volume fraction of the second base resin.")
@@ -157,7 +157,7 @@ class ArcGrading(Table):
 
 
 class MixByCurve(Table):
-    """A mix by one of the mixing curves of its pair: the wall if that curve is true."""
+    """A mix by one of the mixing curves of its two resins: its properties if that curve is true."""
 
     curve: str = Field(min_length=1, description="Name of the mixing curve.")
     place: Literal["softer", "in use", "stiffer"] = Field(description="Against the curve in use.")
@@ -191,7 +191,7 @@ def density_problem(
 ) -> str | None:
     """Problem with the density of a material of this kind, in words; None for a plausible density.
 
-    ``thousandfold`` is the question where a thousandth of it would be right.
+    ``thousandfold`` is a question that is added if a thousandth of the density would be plausible.
     """
     low, high = DENSITY_G_PER_CM3[kind]
     if low <= density_g_per_cm3 <= high:
@@ -214,7 +214,7 @@ _POSITIVE = {
     "elongation_at_break_percent": 1e6,
     **dict.fromkeys(("shore_a", "shore_a_one_year", "shore_d"), HARDEST),
 }
-"""Quantities that are more than 0, and the most that each may be."""
+"""Quantities that must be more than 0, and the greatest value that each may have."""
 
 
 class Material(SparseTable):
@@ -320,7 +320,7 @@ class Material(SparseTable):
         return "cast" if self.is_cast else self.kind
 
     def by_curve(self, other: MixByCurve) -> Material:
-        """This mix as a mixing curve has it; ``other`` is one of `curves`."""
+        """Copy of this mix with modulus and elongation by another mixing curve, one of `curves`."""
         changes: dict[str, Any] = {
             "shear_modulus_MPa": other.shear_modulus_MPa,
             "elongation_at_break_percent": other.elongation_at_break_percent,

@@ -47,14 +47,14 @@ def option(
     Args:
         default: Its value where it is left out.
         help: One sentence.
-        unit: Boundary unit, as in the field's name.
-        low: Least value of the number, or of each entry of a list.
-        high: Greatest.
-        flag: Name on the command line; None: the field's without its unit. One that begins with ``no-`` turns it off.
-        metavar: Form of the value on the command line.
-        registry: Kind of the catalogue that the names are of.
-        shown: Words for a default that is found rather than stated.
-        separator: Between the entries of a list on the command line.
+        unit: Unit, as in the field's name.
+        low: Least value of the number; stated only, not checked, for the entries of a list.
+        high: Greatest value, checked as ``low`` is.
+        flag: Name on the command line; None: the field's without its unit. A flag ``no-...`` sets the option to False.
+        metavar: Placeholder for the value in the help of the command line.
+        registry: Kind of the catalogue, such as materials, that the names belong to.
+        shown: Words that stand for a default which is computed.
+        separator: Text between the entries of a list on the command line.
     """
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high, "registry": registry}
     extra |= {"flag": flag, "metavar": metavar, "shown": shown, "separator": separator}
@@ -69,7 +69,7 @@ def option(
 
 
 def _each(low: float, high: float, unit: str, *, once: bool = True, ends: bool = True) -> AfterValidator:
-    """Every entry of a list within bounds, with the ends or without, and there once."""
+    """Check of a list: numbers from ``low`` to ``high``, ``ends`` included or not; no entry twice if ``once``."""
 
     def check(values: list[Any]) -> list[Any]:
         for index, value in enumerate(values):
@@ -99,7 +99,7 @@ FilePath = Annotated[Path, BeforeValidator(lambda value: Path(value) if isinstan
 
 
 def options_of(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
-    """The options among ``values``, by field. Raises InputError that names the field."""
+    """Options of ``model`` among ``values``, by field; None: the default. Raises InputError that names the field."""
     fields = model.model_fields
     given = {key: value for key, value in values.items() if key in fields and not _is_left_out(fields[key], value)}
     return validate(model, given, None)
@@ -110,13 +110,13 @@ def _is_left_out(field: Any, value: Any) -> bool:
 
 
 def flag_of(model: type[Options], key: str) -> str:
-    """Parameter of an option on the command line: ``speed`` of ``speed_mm_per_s``."""
+    """Name of an option's parameter on the command line, such as ``speed`` for ``speed_mm_per_s``."""
     stated = extra_of(model, key)["flag"]
     return str(stated).replace("-", "_") if stated else re.sub(r"_(mm|N|kPa|Hz|s|days|g)(_per_\w+)?$", "", key)
 
 
 def option_words(options: Options) -> list[tuple[str, str]]:
-    """Parameters on the command line that give the same options, with their texts; empty where the flag says all."""
+    """Pairs of parameter and text that give the same options on a command line; the text of a switch is empty."""
     model, words = type(options), []
     for key, field in model.model_fields.items():
         value = getattr(options, key)

@@ -214,7 +214,7 @@ MOUNTS: dict[str, type[Part]] = {
     "robot-flange": RobotFlange,
     "sleeve": Sleeve,
 }
-"""Models by family: a file names its family, and with it its keys."""
+"""Models of ports, seats and mounts by the family that a file names; the model declares the keys of the file."""
 
 
 class PerforatedRing(Table):

@@ -57,7 +57,7 @@ class Mode(Table):
 
     @property
     def layer_um(self) -> float:
-        """The layer height. Raises InputError for a mode without layers."""
+        """Layer height, µm. Raises InputError for a mode without layers."""
         if self.layer_height_um is None:
             raise _no_machine(self.name, "layers")
         return self.layer_height_um
@@ -77,7 +77,7 @@ class Resolution(Table):
 
     @property
     def dpi(self) -> tuple[int, int]:
-        """Dots an inch along x and y: the integer nearest to the value of the rounded steps."""
+        """Dots per inch along x and y, whole numbers: the stated steps are rounded."""
         return round(_INCH_UM / self.x_um), round(_INCH_UM / self.y_um)
 
 
@@ -121,7 +121,7 @@ class SmallestSizes(Table):
         return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm or self.wall_soft_mm
 
     def pin(self, kind: MaterialKind) -> FeatureSize:
-        """The limit of a free-standing pin for a kind of material, as `wall`."""
+        """The limit of a free-standing pin for a kind of material; the soft one if the process makes none rigid."""
         return self.pin_soft_mm if kind == "elastomer" else self.pin_rigid_mm or self.pin_soft_mm
 
 
@@ -196,11 +196,11 @@ class Printer(Table):
 
     @property
     def step_source(self) -> str:
-        """Source of the step in the plane, or of the step that stands for it in casting."""
+        """Source of the step in the plane; for casting, of the step that stands for it."""
         return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
 
     def mode_for(self, *materials: Material) -> Mode | None:
-        """The finest mode that makes the materials in one job, if any; casting makes what has a table [casting]."""
+        """The finest mode that makes the materials in one job, else None; casting needs a table [casting] of each."""
         if self.is_casting and not all(material.is_cast for material in materials):
             return None
         resins = {resin for material in materials for resin in material.base_resins}

@@ -15,19 +15,19 @@ from pneutouch.spec.files import read_bytes
 Model = TypeVar("Model", bound=BaseModel)
 
 _LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
-"""Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
+"""Pattern of digits that may be a whole number of over 64 bits: TOML has none, Python reads it, a float overflows."""
 
 _LONG_KEY = re.compile(r"""(?:(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
-"""A key of more than 32 parts: tomllib takes the square of their number, an hour for those of 1 MB. No file has ten."""
+"""Pattern of a key of more than 32 parts: tomllib's time grows with the square of their number, an hour for 1 MB."""
 
 _QUOTED = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
 
 _ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+)(?![\w-])")
-"""Numbers of TOML with underscores, or not decimal: on a command line ``1_0`` is a slip of the keyboard, not ten."""
+"""Pattern of TOML numbers with underscores or not decimal: on a command line ``1_0`` is a typing error, not ten."""
 
 
 def toml_content(text: str) -> dict[str, Any]:
-    """Content that TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
+    """Content of a TOML text. Raises ValueError (such as TOMLDecodeError), or RecursionError if nested too deep."""
     if _LONG_KEY.search(text):
         raise ValueError("a key of more than 32 parts with points between")
     content = tomllib.loads(text)
@@ -37,7 +37,7 @@ def toml_content(text: str) -> dict[str, Any]:
 
 
 def toml_value(text: str) -> Any:
-    """The value that TOML reads from a text; the very same text where it is a bare word, or has a number with ``_``."""
+    """Value of a text as TOML; the text itself if it is no TOML value, or holds a number with ``_`` or not decimal."""
     if _ODD_NUMBER.search(_QUOTED.sub("", text)):
         return text
     try:
@@ -74,11 +74,11 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 _MOST_PROBLEMS = 20
-"""Problems of one file that are reported: a user mends some and tries again, and each costs a search for its key."""
+"""Greatest number of problems reported for a file: a user mends a few at a time; each costs a search for its key."""
 
 
 def validate(model: type[Model], content: dict[str, Any], where: str | None) -> Model:
-    """Validate ``content`` against ``model``; ``where`` names the file in the message, None: no file."""
+    """Validate ``content`` against ``model``. Raises InputError; ``where`` names the file in it, None: no file."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
@@ -102,7 +102,7 @@ of one."""
 
 
 def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel]) -> dict[str, Any]:
-    """Return ``content`` with fields changed. Raises InputError for a table or a key that ``model`` has not."""
+    """Copy of ``content`` with fields changed. Raises InputError for a table or a key that ``model`` does not have."""
     result = {key: dict(value) if isinstance(value, dict) else value for key, value in content.items()}
     for name, value in changes.items():
         table_name, _, key = name.partition(".")
@@ -126,7 +126,7 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
 
 
 def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibration",)) -> dict[str, Any]:
-    """Changes from ``table.key=value`` in TOML or bare words; ``keys`` stand outside the tables. Raises InputError."""
+    """Changes from texts ``table.key=value``, read by `bare_value`; ``keys`` need no table. Raises InputError."""
     changes = {}
     for text in assignments:
         key, equals, value = (part.strip() for part in text.partition("="))
@@ -137,7 +137,7 @@ def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibrat
 
 
 def bare_value(text: str) -> Any:
-    """A value of TOML or a bare word; numbers with commas between are a list without its brackets."""
+    """Value of a text as TOML, else the text itself; numbers separated by commas are a list, without brackets."""
     value = toml_value(text)
     if value != text or "," not in text:
         # A text in quotes is a text, whatever it holds.

@@ -57,11 +57,11 @@ class Layer(Table):
     )
 
     def period(self) -> float | None:
-        """The pitch or cell as given, mm; None if the frequency is given."""
+        """Pitch or cell as given, mm; None if the frequency is given instead."""
         raise NotImplementedError
 
     def period_key(self) -> str:
-        """Name of the key that gives it."""
+        """Name of the key that gives the pitch or cell."""
         return "pitch_mm"
 
     def pitch(self, speed: float) -> float:
@@ -125,15 +125,15 @@ class RandomPhase(Layer):
     seed: int = Field(default=1, ge=0, le=2**31 - 1, description="Seed of the phases; a whole number from 0.")
 
     def period(self) -> float | None:
-        """The first pitch as given, mm."""
+        """First pitch as given, mm; None if frequencies are given instead."""
         return None if self.pitches_mm is None else self.pitches_mm[0]
 
     def period_key(self) -> str:
-        """Name of the key that gives them."""
+        """Name of the key that gives the pitches."""
         return "pitches_mm"
 
     def pitches(self, speed: float) -> list[float]:
-        """Pitches in mm at a speed in mm/s."""
+        """Pitches in mm, as given or from the frequencies at a speed in mm/s."""
         if self.pitches_mm is not None:
             return self.pitches_mm
         return [speed / frequency for frequency in self.target_frequencies_Hz or []]
@@ -247,11 +247,11 @@ _KINDS: tuple[tuple[type[Layer], Any], ...] = (
 )
 
 LAYERS: dict[str, type[Layer]] = {kind: model for model, kinds in _KINDS for kind in kinds}
-"""Models of a [[layer]] by its kind."""
+"""Model of a [[layer]] table by its ``kind``."""
 
 
 def validate_specimen(content: dict[str, Any], where: str) -> Specimen:
-    """The model of a specimen's file; each layer by the model of its kind, so that messages name layer and key."""
+    """Specimen from the content of a file, layers checked by the models of their kinds. Raises InputError."""
     layers = content.get("layer", [])
     if not isinstance(layers, list):
         raise InputError("layer: must be tables, written [[layer]]", file=where)

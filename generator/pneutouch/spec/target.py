@@ -105,12 +105,12 @@ class TargetFigures(Table):
 
     @property
     def finger_diameter_mm(self) -> float | None:
-        """Diameter of the finger that the sensor must fit on, None if none is required."""
+        """Diameter, mm, of the finger that the sensor must fit on; None if none is required."""
         return None if self.fits is None else float(self.fits.partition(":")[2])
 
     @property
     def is_for_a_grade(self) -> bool:
-        """True if it needs the search of graded membranes."""
+        """True if a requirement is one that only the search of graded membranes handles."""
         return self.widest_range or self.same_sensitivity_at_kPa is not None
 
 
@@ -236,7 +236,7 @@ class Shelf(Table):
     )
 
     def holds(self, kind: str, name: str) -> bool:
-        """True if a thing is on the shelf, or nothing is stated about its kind."""
+        """True if ``name`` is on the shelf, or if the shelf lists nothing of its ``kind``, such as ports."""
         listed: list[str] | None = getattr(self, kind)
         return listed is None or name in listed
 

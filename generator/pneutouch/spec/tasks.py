@@ -21,7 +21,7 @@ TASK_FIGURES = {
     "stiffness": "stiffness_N_per_mm",
     "force_range": "force_range_N",
 }
-"""Keys of the figures that a driving pressure is set for, by their short names."""
+"""Keys of the figures that a task can require, by their short names."""
 
 
 class DrivingTask(Table):
@@ -74,7 +74,7 @@ class TaskFile(Table):
 
 
 def parse_task(text: str) -> DrivingTask:
-    """The task of a text ``sensitivity=1.8``, by short or by full key. Raises InputError."""
+    """Task of a text such as ``sensitivity=1.8``, by the figure's short or full key. Raises InputError."""
     key, equals, value = (part.strip() for part in text.partition("="))
     keys = TASK_FIGURES | {full: full for full in TASK_FIGURES.values()}
     if not equals:
@@ -104,7 +104,7 @@ def read_tasks(path: Path) -> list[DrivingTask]:
 
 
 def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
-    """Line and cells that are not empty of every row. Raises InputError for a header that holds other keys."""
+    """Line number of every row, and its cells by column, empty ones left out. Raises InputError for another column."""
     try:
         text = read_bytes(path, kind="CSV file").decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -133,9 +133,9 @@ def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
 
 
 def _pointed(key: str, cell: str, mark: str) -> str:
-    """A cell as TOML has it: a decimal comma of a figure as a point, where commas do not separate the cells.
+    """Cell with the decimal comma of a figure replaced by a point, where commas do not separate cells (``mark`` ",").
 
-    One that may separate thousands stays, and is refused as no number.
+    A comma that may separate thousands stays: the cell is then refused as no number.
     """
     decimal = mark == "," and key in TASK_FIGURES.values() and not _THOUSANDS.fullmatch(cell)
     return cell.replace(",", ".") if decimal and _DECIMAL_COMMA.fullmatch(cell) else cell

@@ -1,4 +1,4 @@
-"""Data as TOML text: plain values first, then tables, then arrays of tables."""
+"""Data as TOML text: plain values first, then tables, then arrays of tables; and commented design files."""
 
 import datetime
 import json
@@ -20,7 +20,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
 
 
 def value_text(value: Any) -> str:
-    """One value on one line, None in a table left out. Raises TypeError for a value that TOML has no form for."""
+    """One value on one line, without entries of None in a table. Raises TypeError for a value that TOML cannot hold."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -69,20 +69,19 @@ def _dotted(path: tuple[str, ...]) -> str:
 
 
 def assignments(changes: Changes) -> list[str]:
-    """Changes as texts that `parse_changes` reads, words bare where they can be."""
+    """Changes as texts ``key=value`` for `parse_changes`, a text value unquoted where it reads back unchanged."""
     return [f"{key}={value if _is_bare(value) else value_text(value)}" for key, value in changes.items()]
 
 
 def _is_bare(value: Any) -> bool:
-    """True if a text reads as itself without quotes."""
+    """True if a value is a text that `bare_value` reads back unchanged without quotes."""
     return isinstance(value, str) and value == value.strip() and bare_value(value) == value
 
 
 def design_template(title: str, values: Mapping[str, Any] | None = None, note: str | None = None) -> str:
-    """Return a design file with every table and key, its default, unit, bounds and help.
-
-    ``values`` by table and key stand in place of defaults; ``note`` in place of the head's second sentence.
-    """
+    """Commented design file: every key of its tables with default, unit, bounds and help. ``values`` replace defaults
+    by table and key; [mould], [cast_ring], [accepted] and keys without a table are written only if they are in
+    ``values``. ``note`` replaces the second sentence of the first line."""
     chosen = values or {}
     blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out; shown are the defaults.'}"]
     blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]

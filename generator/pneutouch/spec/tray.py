@@ -17,13 +17,13 @@ LEAST_COPIES, MOST_COPIES = 1, 200
 
 
 def _by_key(value: dict[str, Any]) -> WithJsonSchema:
-    """Values by ``table.key``, or as tables of keys: TOML makes tables of dots that are not in quotes."""
+    """JSON schema of values by ``table.key``, or of tables of keys, which TOML makes of dots outside quotes."""
     either = {"anyOf": [value, {"type": "object", "additionalProperties": value}]}
     return WithJsonSchema({"type": "object", "additionalProperties": either})
 
 
 def _setting(given: Any) -> Any:
-    """One error, not one for each kind that does not match."""
+    """Return a valid value, else raise one ValueError, in place of an error for each type of the union."""
     good = all(map(is_finite, given)) if isinstance(given, list) else isinstance(given, str) or is_finite(given)
     if not good:
         raise ValueError(f"{given!r:.60}: must be a finite number, text or a list of finite numbers")
@@ -76,7 +76,7 @@ class Entry(Table):
     @field_validator("over", "set", mode="before")
     @classmethod
     def _flat(cls, given: Any) -> Any:
-        """Keys as ``table.key``: TOML makes tables of dots that are not in quotes."""
+        """Entries with keys ``table.key`` in place of the tables that TOML makes of dots outside quotes."""
         if not isinstance(given, dict):
             return given
         flat: dict[str, Any] = {}
@@ -110,7 +110,7 @@ _OPENING = ("[", "{", "'", '"')
 
 
 def parse_over(texts: Sequence[str]) -> dict[str, list[Any]]:
-    """Values by key. Raises InputError for a text that is not of the grammar and for a key given twice."""
+    """Values by key from texts ``table.key=VALUES``. Raises InputError for other texts and for a repeated key."""
     varied: dict[str, list[Any]] = {}
     for text in texts:
         key, equals, values = (part.strip() for part in text.partition("="))
@@ -124,7 +124,7 @@ def parse_over(texts: Sequence[str]) -> dict[str, list[Any]]:
 
 
 def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[float | int]:
-    """``count`` values at equal distances, both ends included; whole numbers where all of them are."""
+    """``count`` even values from ``start`` to ``stop``, whole numbers if ends and values are. Raises InputError."""
     shown = f"from {start} to {stop} count {count}"
     ends = (start, stop)
     if not all(map(is_finite, ends)):
@@ -140,7 +140,7 @@ def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[floa
 
 
 def _values(key: str, text: str, given: str) -> list[Any]:
-    """A range; or TOML values and bare words, separated by the commas outside brackets and quotes."""
+    """Values of a range ``from:to:count``, or TOML values and bare words between commas outside brackets and quotes."""
     parts = [] if text.startswith(_OPENING) else text.split(":")
     if len(parts) == 3:
         return spread("over", key, *(toml_value(part.strip()) for part in parts))

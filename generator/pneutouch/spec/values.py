@@ -1,8 +1,8 @@
-"""A number with its source: nothing empirical enters the program without one.
+"""Sourced numbers, numbers in texts, and the rule for names.
 
-Numbers in texts, as people write them. Python also reads ``1_0`` as ten, ``nan`` and digits of other scripts.
-
-Names of designs, specimens, trays, sweeps and calibrations: one rule, for they name files and bodies of a 3MF.
+No empirical number enters the program without a source. Numbers in texts are plain decimal ones; Python's ``float``
+also reads ``1_0`` as ten, ``nan``, and digits of other scripts. Designs, specimens, trays, sweeps and calibrations
+share one rule for names, because these name files and bodies of a 3MF too.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Quantity(Table):
         return self.high if self.high is not None else self.nominal
 
     def text(self, digits: int = 4) -> str:
-        """The number as a datasheet prints it: ``0.17``, ``1.3 to 1.8``, ``27.6 +- 1.0``."""
+        """Number as a datasheet prints it, to ``digits`` significant digits: ``0.17``, ``1.3 to 1.8``, ``27.6 ± 1``."""
         if self.value is not None and self.spread is not None:
             return f"{self.value:.{digits}g} ± {self.spread:.{digits}g}"
         if self.value is not None:
@@ -70,14 +70,14 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 def is_finite(value: object) -> bool:
-    """True if a value is a number that a float holds. ``math.isfinite`` raises for whole numbers beyond that."""
+    """True for a number, not a bool, that a float can hold; ``math.isfinite`` raises for greater whole numbers."""
     if isinstance(value, bool) or not isinstance(value, float | int):
         return False
     return abs(value) <= sys.float_info.max
 
 
 def finite_numbers(values: Iterable[object], key: str) -> list[float]:
-    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` for no finite one."""
+    """The values as floats, so that 0 and 0.0 are written alike. Raises InputError on ``key`` if one is not finite."""
     numbers = []
     for value in values:
         if not is_finite(value):
@@ -87,7 +87,7 @@ def finite_numbers(values: Iterable[object], key: str) -> list[float]:
 
 
 def plain_number(text: str) -> float:
-    """The finite number of a text: digits with a point and an exponent. Raises ValueError."""
+    """Finite number in a text of sign, digits, decimal point and exponent. Raises ValueError for any other text."""
     value = float(text) if _NUMBER.fullmatch(text.strip()) else math.nan
     if not math.isfinite(value):
         raise ValueError(f"{text} is no finite number")
@@ -95,7 +95,7 @@ def plain_number(text: str) -> float:
 
 
 def plain_numbers(text: str) -> list[float]:
-    """The numbers of a text with commas between. Raises ValueError."""
+    """Numbers in a text, separated by commas. Raises ValueError as `plain_number` does."""
     return [plain_number(part) for part in text.split(",")]
 
 
@@ -108,14 +108,14 @@ _MOST_BYTES = 200
 
 
 def plain_name(name: str, *, key: str | None = None, file: str | PathLike[str] | None = None) -> str:
-    """Return a name that obeys the rule. Raises InputError."""
+    """Return ``name`` if it obeys `NAME_RULE`. Raises InputError with ``file`` and ``key`` if it does not."""
     if not (_NAME.fullmatch(name) and len(name) <= _MOST and len(name.encode()) <= _MOST_BYTES):
         raise InputError("cannot be a name", file=file, key=key, value=name, remedy=NAME_RULE)
     return name
 
 
 def name_of(path: Path) -> str:
-    """The name that a file gives its content: its own without suffix. Raises InputError if that is no name."""
+    """Name of a file's content: that of the file without suffix. Raises InputError if it breaks `NAME_RULE`."""
     try:
         return plain_name(path.stem)
     except InputError:
@@ -124,6 +124,6 @@ def name_of(path: Path) -> str:
 
 
 def file_name(text: str) -> str:
-    """A text as part of a file's name: on one line, no folder, not hidden, and not too long for a file system."""
+    """Text made fit for part of a file's name: printable, no slashes, no leading points, neither long nor empty."""
     plain = "".join(c if c.isprintable() and c not in "/\\" else "-" for c in text).lstrip(".")[:_MOST]
     return plain.encode()[:_MOST_BYTES].decode(errors="ignore") or "unnamed"
