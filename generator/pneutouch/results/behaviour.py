@@ -12,18 +12,18 @@ from pneutouch.spec.calibration import CalibrationSource
 
 @dataclass(frozen=True, slots=True)
 class GaugeState:
-    """The smallest force at one driving pressure; None where it is not known."""
+    """The smallest force at one driving pressure; null where it is not known."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     smallest_force_N: float | None
-    """Smallest force that is detected on the range."""
+    """Smallest force that is detected over the range: threshold over sensitivity."""
     smallest_force_at_first_contact_N: float | None
-    """Smallest force that is detected at first contact."""
+    """Smallest force that is detected at first contact, where the curve starts."""
     zero_drift_kPa_per_K: float
     """Change of the pressure without contact by temperature."""
     zero_drift_N_per_K: float | None
-    """The same, read as a force."""
+    """The same drift, read as a force."""
     warming_that_reads_as_smallest_force_K: float | None
     """Warming whose drift reads as the smallest force."""
 
@@ -35,9 +35,9 @@ class GaugeFigures:
     name: str | None
     """Name of the gauge; null where the one of the paper is assumed."""
     title: str
-    """Title."""
+    """Name of the gauge in words."""
     reference: Literal["gauge", "absolute"]
-    """Reference pressure of the gauge."""
+    """Reference of the gauge: the air around it (gauge) or a vacuum (absolute)."""
     reads_from_kPa: float
     """Least gauge pressure that is read."""
     reads_to_kPa: float
@@ -53,9 +53,9 @@ class GaugeFigures:
     bandwidth_Hz: float | None
     """Half of the rate: faster changes are not followed."""
     criterion: str
-    """Criterion, in words."""
+    """Criterion of detection, in words."""
     limited_by: str | None
-    """Effect that limits it."""
+    """Property of the gauge that sets the threshold, in words."""
     inner_volume_counted_mL: float | None
     """Gas inside the gauge that is counted in the dead volume."""
     states: tuple[GaugeState, ...]
@@ -64,7 +64,7 @@ class GaugeFigures:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """Losses after the plate has stopped; or when the run ended."""
+    """Losses after the plate has stopped; or ``ended`` alone, the reason why there are none."""
 
     force_loss_percent: float | None = None
     """Fall of the force at constant travel from from_s to to_s, over its value at from_s."""
@@ -75,21 +75,21 @@ class Hold:
     pressure_rise_loss_percent_per_decade: float | None = None
     """Fall of the pressure rise in a decade of time, by least squares over log time, over its value at from_s."""
     from_s: float | None = None
-    """Start of the time that is looked at, from the end of the ramp."""
+    """Start of the time interval that is evaluated, from the end of the ramp."""
     to_s: float | None = None
-    """End of that time."""
+    """End of that time interval, from the end of the ramp."""
     ended: str | None = None
-    """Why it ended early."""
+    """Reason why the run ended early; then every other key is left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """Loading and unloading at one speed, where the run was not followed to its end."""
+    """Loading and unloading at one speed, where the run ended early."""
 
     speed_mm_per_s: float
     """Speed of the plate."""
     ended: str | None = None
-    """Why it ended early."""
+    """Reason why the run ended early; left out: it did not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,19 +99,19 @@ class WholeLoop(Loop):
     width_percent: float
     """Width of the loop at half travel, over full scale."""
     area_percent: float
-    """Area of the loop over that under the loading curve."""
+    """Area of the loop over the area under the loading curve."""
     contact_lost_at_mm: float | None
-    """Travel at which the object leaves the sensor as it is withdrawn; null: it does not before the start."""
+    """Travel at which the object leaves the sensor on the way back; null: it does not before the start."""
 
 
 @dataclass(frozen=True, slots=True)
 class BySource:
-    """One source of relaxation data."""
+    """Relaxation and hysteresis by one source of relaxation data."""
 
     relaxation: Hold
-    """After the plate has stopped."""
+    """Losses after the plate has stopped."""
     hysteresis: tuple[WholeLoop | Loop, ...]
-    """Loops, one entry a speed."""
+    """Loops of loading and unloading, one entry a speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,13 +131,13 @@ class Viscous:
     unknown: str | None = None
     """Reason why there is none; then every other key is left out."""
     depth_mm: float | None = None
-    """Plate travel after first contact."""
+    """Plate travel, after first contact, at which the plate stops or turns."""
     ramp_speed_mm_per_s: float | None = None
-    """Speed at which it is pressed before the hold."""
+    """Speed of the plate before the hold."""
     sources: tuple[str, ...] = ()
-    """Sources that it follows from."""
+    """Sources of relaxation data."""
     basis: tuple[str, ...] = ()
-    """Basis of it."""
+    """Assumptions, in sentences."""
     states: tuple[ViscousState, ...] = ()
     """One entry a driving pressure."""
 
@@ -147,7 +147,7 @@ class LinePiece:
     """One piece of the gas line."""
 
     part: str
-    """Piece of the line."""
+    """Name of the piece: gap, channel, port or tube."""
     length_mm: float
     """Length."""
     inner_diameter_mm: float
@@ -158,7 +158,7 @@ class LinePiece:
 
 @dataclass(frozen=True, slots=True)
 class DynamicRecord:
-    """Speed of the reading at one driving pressure, in one series of relaxation data."""
+    """Speed of the reading at one driving pressure, by one source of relaxation data."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
@@ -167,25 +167,25 @@ class DynamicRecord:
     first_resonance_Hz: float | None
     """First resonance; null: there is none."""
     resonance_gain: float | None
-    """Gain at the resonance."""
+    """Gain at the resonance; null: there is none."""
     bandwidth_3_dB_Hz: float | None
-    """Frequency up to which the gain is within 3 dB."""
+    """Frequency up to which the gain is within 3 dB, at most half of the gauge's rate; null: none found."""
     bandwidth_limited_by: str | None
-    """Effect that limits that frequency."""
+    """Effect that limits that frequency; null: none."""
     within_5_percent_Hz: float | None
     """Frequency up to which the gain is within 5 %."""
     within_5_percent_limited_by: str | None
-    """Effect that limits that frequency."""
+    """Effect that limits that frequency; null: none."""
     delay_ms: float
     """Time from a step of force to half of the reading."""
     rise_time_ms: float
     """Time from 10 to 90 % of the reading."""
     overshoot_percent: float
-    """Greatest reading over the last one, less 100 %."""
+    """Greatest reading over the final one, less 100 %."""
     fast_gas_over_slow: float
-    """Stiffness of the gas at once over that of a slow change."""
+    """Stiffness of the gas for a sudden change over that for a slow one."""
     fast_wall_over_slow: float | None
-    """Stiffness of the wall at once over that of a slow change."""
+    """Stiffness of the wall for a sudden change over that for a slow one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,17 +193,17 @@ class Dynamics:
     """Speed of the reading."""
 
     basis: tuple[str, ...]
-    """Basis of it."""
+    """Assumptions, in sentences."""
     line: tuple[LinePiece, ...]
     """Pieces from the cavity to the gauge."""
     end_volume_mL: float
-    """Gas volume at the end of the line."""
+    """Gas volume behind the last piece."""
     gauge_rate_Hz: float | None
     """Readings of the gauge a second; null: not known."""
     states: tuple[DynamicRecord, ...]
-    """One entry a driving pressure."""
+    """One entry for each driving pressure and source of relaxation data."""
     note: str | None = None
-    """A note in words."""
+    """A note if the stated dead volume is less than that of the line as drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,13 +227,13 @@ class ContactErrors:
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     pressure_rise_kPa: tuple[float, ...]
-    """Cavity pressure less driving pressure."""
+    """Readings for which the errors are stated: cavity pressure less driving pressure."""
     contact_force_N: tuple[float, ...]
-    """Force on the object."""
+    """Force of the central plate at each of these readings."""
     force_error_percent: tuple[tuple[float | None, ...], ...]
-    """Error of the force read, over the true one; one list a contact, null where the reading is not reached."""
+    """Error of the force read, over the true one: a list for each contact; null: reading not reached."""
     standard_uncertainty_relative: float | None
-    """Standard uncertainty over the value."""
+    """Relative standard uncertainty of the force read while object and place are unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,13 +243,13 @@ class ContactAnywhere:
     unknown: str | None = None
     """Reason why there is none; then every other key is left out."""
     contacts: tuple[ContactPlace, ...] = ()
-    """Objects and places of contact."""
+    """Objects and places of contact, in the order of the errors."""
     states: tuple[ContactErrors, ...] = ()
     """One entry a driving pressure."""
     plate_offset_without_effect_mm: float | None = None
-    """Offset up to which a plate presses as if it were central."""
+    """Offset up to which a plate presses as a central one does."""
     table_error_relative: float | None = None
-    """Known error of the table that the errors are from."""
+    """Known error of the table from which the errors are read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,7 +263,7 @@ class Aged:
 
 
 class CalibratedBy(CalibrationSource):
-    """The calibration that a prediction is of, with the measurement behind it."""
+    """The calibration that a prediction uses, with the measurement behind it."""
 
     name: str = Field(description="Name of the calibration.")
     title: str = Field(description="Title of the calibration.")

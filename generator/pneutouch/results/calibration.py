@@ -10,21 +10,21 @@ from pneutouch.results.measured import ReadFiles
 
 @dataclass(frozen=True, slots=True)
 class PriorRecord:
-    """Prior of a parameter, and whether it counted."""
+    """Prior of a parameter: what was known of it before the fit."""
 
     counted: bool
-    """True if the prior counted."""
+    """True if the fit used the prior."""
     standard_deviation: float
-    """Standard deviation."""
+    """Standard deviation of the prior, relative or in the unit of the parameter."""
     relative: bool
-    """True if it is relative."""
+    """True if the standard deviation is relative."""
     source: str
     """Source of the prior."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EstimateRecord:
-    """A fitted parameter in the unit that it leaves with; without an interval where the runs give none."""
+    """A fitted parameter in the unit of its key."""
 
     parameter: str
     """The parameter in words."""
@@ -39,17 +39,17 @@ class EstimateRecord:
     on_bound: bool
     """True if the fit ended on a bound."""
     designed: float
-    """Value of the design."""
+    """Value by the design."""
     prior: PriorRecord
     """Value and standard deviation before the fit."""
 
 
 @dataclass(frozen=True, slots=True)
 class CorrelationRecord:
-    """The correlation matrix of the fitted parameters, None if unknown."""
+    """The correlation matrix of the fitted parameters."""
 
     parameters: tuple[str, ...]
-    """Parameters in order."""
+    """Names of the parameters, in the order of the rows."""
     matrix: tuple[tuple[float | None, ...], ...]
     """Correlation matrix; null: not known."""
 
@@ -61,9 +61,9 @@ class GoodnessRecord:
     chi_squared: float
     """Sum of the squared residuals over their variances."""
     degrees_of_freedom: int
-    """Effective degrees of freedom; null: infinite."""
+    """Degrees of freedom of that sum."""
     chi_squared_per_degree: float | None
-    """The same over the degrees of freedom."""
+    """The sum over the degrees of freedom; null: there are none."""
     points_used: int
     """Points that were used."""
     points_left_out: int
@@ -71,9 +71,9 @@ class GoodnessRecord:
     scatter_over_stated: Mapping[str, float]
     """Scatter of the readings over the stated one, by channel."""
     model_leaves_out_share_of_reading: Mapping[str, float]
-    """Part of the reading that the model leaves out, by channel."""
+    """Model discrepancy, what the model leaves out, over the reading, by channel."""
     considered: tuple[str, ...]
-    """Sources that the fit counts."""
+    """Parameters that are not fitted, whose uncertainty the fit counts."""
     variance_of_runs_over_points: float
     """Variance between runs over that between points."""
     interval_from_runs: bool
@@ -119,27 +119,27 @@ class ResidualRecord:
     run: str
     """Name of the run."""
     driving_pressure_kPa: float | None
-    """Gauge pressure before contact."""
+    """Gauge pressure before contact; null: an injection."""
     force_share_of_full_scale: float | None
-    """Root mean square residual of the force."""
+    """Root mean square residual of the force; null: an injection."""
     pressure_share_of_full_scale: float | None
-    """Root mean square residual of the pressure rise."""
+    """Root mean square residual of the pressure rise; null: not known."""
 
 
 @dataclass(frozen=True, slots=True)
 class CorrelatedRecord:
-    """Strongly correlated parameters: the runs determine them together better than each."""
+    """Strongly correlated parameters: the runs determine a combination of them better than each one."""
 
     parameters: tuple[str, ...]
-    """Parameters in order."""
+    """Names of the parameters."""
     correlation: float
-    """Correlation."""
+    """Strongest correlation among them, with its sign."""
     standard_deviation_alone: tuple[float | None, ...]
-    """Standard deviations if each were fitted alone."""
+    """Standard deviation of each by the runs, all of them fitted; null: infinite."""
     standard_deviation_others_known: tuple[float | None, ...]
-    """Standard deviations if the others were known."""
+    """Standard deviation of each if the others were known; null: infinite."""
     modulus_times_wall_to_the: float | None
-    """Power of the wall in the combination that is known well; null: not of modulus and wall."""
+    """Power of the wall in the product with the modulus that is known well; null: other parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class FurtherRecord:
     widest_interval_shrinks: float
     """Factor by which the widest interval would shrink."""
     expected_half_widths: Mapping[str, float | None]
-    """Half widths then expected, by parameter."""
+    """Half widths of the 95 % intervals then expected, by parameter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,9 +175,9 @@ class HeldOutRecord:
     pressure_greatest_share: float
     """Greatest error of the pressure rise over full scale."""
     points: int
-    """Number of points."""
+    """Points that were compared."""
     points_left_out: int
-    """Points that were left out."""
+    """Points that the model could not compute."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,7 +191,7 @@ class CalibrationRecord:
     campaign: str
     """Title of the campaign."""
     runs: int
-    """Number of runs."""
+    """Number of loading curves."""
     injections: int
     """Number of injection runs."""
     driving_pressures_kPa: tuple[float, ...]
@@ -201,11 +201,11 @@ class CalibrationRecord:
     estimates: tuple[EstimateRecord, ...]
     """Fitted parameters."""
     correlation: CorrelationRecord
-    """Correlation."""
+    """Correlation of the fitted parameters."""
     fit: GoodnessRecord
     """Goodness of the fit."""
     response: tuple[FittedResponse, ...]
-    """Corrections by driving pressure."""
+    """Corrections of the fitted model, one entry a driving pressure."""
     residuals: tuple[ResidualRecord, ...]
     """Residuals of each run."""
     misses: tuple[MissRecord, ...]
@@ -213,26 +213,26 @@ class CalibrationRecord:
     strongly_correlated: tuple[CorrelatedRecord, ...]
     """Parameters that the runs cannot separate."""
     unidentified: tuple[str, ...]
-    """Parameters that the runs do not show."""
+    """Parameters that the runs do not determine."""
     further_tests: tuple[FurtherRecord, ...]
-    """Tests that would show more."""
+    """Tests that would reduce the uncertainty."""
     held_out: tuple[HeldOutRecord, ...]
     """Driving pressures that were held out."""
     warnings: tuple[str, ...]
-    """Doubtful parts."""
+    """Reasons to doubt the calibration, in words."""
     notes: tuple[str, ...]
     """Notes in words."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeRecord(CalibrationRecord):
-    """A calibration as ``calibrate`` prints it."""
+    """A calibration as ``calibrate`` prints it, with the files that it read and wrote."""
 
     calibration: str | None
-    """Name that it was saved by; null: it was not."""
+    """Name under which it was saved; null: it was not saved."""
     written: tuple[str, ...]
     """Files that were written."""
     failures: tuple[tuple[str, str], ...]
-    """Files that could not be used."""
+    """Files that could not be used, each with the reason."""
     read_as: tuple[ReadFiles, ...]
-    """Columns and formats that were found by the look of the files."""
+    """Columns and formats that were found from the files themselves."""

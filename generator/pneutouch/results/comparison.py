@@ -1,4 +1,4 @@
-"""A comparison: the content of ``comparison.json``, and the source of its page and its text."""
+"""A comparison of sensors: the content of ``comparison.json``, from which its page and its text are made."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ComparedCurve(CurvePoints):
     """A curve that is drawn: a predicted one, or a measured run."""
 
     label: str
-    """In words."""
+    """Label of the column that the curve belongs to."""
     measured: bool
     """True if it is a measured run."""
     driving_pressure_kPa: float
@@ -36,25 +36,25 @@ class ColumnRecord:
     """One column of a comparison."""
 
     label: str
-    """In words."""
+    """Label of the column: the sensor's name, or what distinguishes it."""
     name: str
-    """Name."""
+    """Name of the sensor."""
     kind: str
-    """Kind."""
+    """Origin of the figures, such as design, or measured."""
     source: str
-    """Source of the limit."""
+    """File or folder that the column comes from."""
     simulated: bool
-    """True if a program made the files."""
+    """True if a program made the runs behind it."""
     driving_pressures_kPa: tuple[float, ...]
     """Gauge pressures before contact."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueRecord:
-    """A figure and the ends of its interval, None if unknown."""
+    """A figure and the ends of its interval, null if unknown."""
 
     value: float
-    """Value."""
+    """Value of the figure."""
     low: float | None
     """Lower end of the interval."""
     high: float | None
@@ -63,36 +63,36 @@ class ValueRecord:
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRecord:
-    """A difference from the first column with its interval; None if unknown."""
+    """A difference from the first column with its interval; null if unknown."""
 
     difference: float
-    """Difference from the first column."""
+    """Value of the column less that of the first one."""
     percent: float | None
-    """The same over the first column."""
+    """The difference over the value of the first column."""
     low_percent: float | None
-    """Lower end of its interval."""
+    """Lower end of the interval of that percentage."""
     high_percent: float | None
-    """Upper end of its interval."""
+    """Upper end of the interval of that percentage."""
     exceeds: bool | None
     """True if the difference exceeds its uncertainty; null: not known."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowRecord:
-    """A figure at a driving pressure (None: of the whole sensor): a value a column, a difference a column but one."""
+    """A figure: a value for every column, and for every column but the first the difference from it."""
 
     figure: str
-    """Name of the figure."""
+    """Key of the figure, which ends in its unit."""
     name: str
-    """Name."""
+    """Name of the figure in words."""
     unit: str
-    """Unit of the value."""
+    """Unit of the values."""
     driving_pressure_kPa: float | None
-    """Gauge pressure before contact."""
+    """Gauge pressure before contact; null: a figure of the whole sensor."""
     values: tuple[ValueRecord | None, ...]
     """One value a column; null: not known."""
     differences: tuple[DifferenceRecord | None, ...]
-    """One difference a column but the first."""
+    """One difference for every column but the first; null: not known."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,17 +102,17 @@ class ComparisonRecord:
     pneutouch: str
     """Version of the program."""
     compared: tuple[ColumnRecord, ...]
-    """Columns."""
+    """Columns, the one that the others are compared with first."""
     inputs: Mapping[str, tuple[Any, ...]]
-    """Fields that differ, with a value a column."""
+    """Input fields that differ, each with a value for every column."""
     driving_pressures_kPa: tuple[float, ...]
-    """Gauge pressures before contact."""
+    """Gauge pressures before contact that all columns share."""
     coverage_factor: float
     """Coverage factor of the intervals."""
     criterion: str
-    """Criterion, in words."""
+    """Criterion by which a difference exceeds its uncertainty, in words."""
     figures: tuple[RowRecord, ...]
-    """Figures by name."""
+    """Figures that at least two columns have."""
     notes: tuple[str, ...]
     """Notes in words."""
     curves: tuple[ComparedCurve, ...]

@@ -22,7 +22,7 @@ class PrintedCoupon:
     copies: int
     """Number of copies."""
     places_mm: tuple[tuple[float, ...], ...]
-    """Place of each copy on the tray."""
+    """Place of each copy on the printer's tray."""
     size_mm: tuple[float, ...]
     """Lengths along x, y and z."""
     exact_volume_mm3: float
@@ -38,7 +38,7 @@ class CouponSet:
     """A set of coupons that was built."""
 
     name: str
-    """Name."""
+    """Name of the set."""
     coupons: tuple[PrintedCoupon, ...]
     """Pieces of every coupon."""
     folder: str
@@ -63,10 +63,10 @@ class MeasuredFigure:
 
 @dataclass(frozen=True, slots=True)
 class ChangedQuantity:
-    """A measured quantity of a profile and the one that it replaces, as the tables of the files."""
+    """A measured quantity of a profile and the one that it replaces, as tables of the profile's file."""
 
     file: str
-    """Path of the file."""
+    """Path of the profile."""
     key: str
     """Keys of the quantity, with points between."""
     before: Mapping[str, Any] | None

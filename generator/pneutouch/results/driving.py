@@ -11,7 +11,7 @@ class UnknownLeak:
     """A leak that was not measured."""
 
     unknown: str
-    """Why it is not known, and what would tell."""
+    """Reason why the leak is not known, and the tests that would measure it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,16 +19,16 @@ class MeasuredLeak:
     """A measured leak."""
 
     rate_kPa_per_min: float
-    """Fall of the pressure."""
+    """Fall of the pressure per minute."""
     at_kPa: float
-    """Gauge pressure at which it falls so."""
+    """Gauge pressure at which that fall was measured."""
     measured: str
     """Place or file of the measurement."""
 
 
 @dataclass(frozen=True, slots=True)
 class FigureReach:
-    """Least and greatest value of a figure over the driving pressures, in its unit, and the pressures of both."""
+    """Least and greatest value of a figure over the driving pressures, in the figure's unit, and where they lie."""
 
     low: float
     """Least value."""
@@ -50,7 +50,7 @@ class FigureReach:
 
 @dataclass(frozen=True, slots=True)
 class PressureInterval:
-    """Driving pressures at which the sensor in hand may have a figure, k = 2."""
+    """Driving pressures at which the real sensor may have a figure, within its expanded uncertainty (k = 2)."""
 
     low_kPa: float
     """Lower end."""
@@ -64,12 +64,12 @@ class PressureInterval:
 
 @dataclass(frozen=True, slots=True)
 class TaskSolution:
-    """A driving pressure that does a task, and the sensor there."""
+    """A driving pressure that meets a task, and the sensor there."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     band: PressureInterval | None
-    """Pressures at which the sensor in hand may do it; null: not known."""
+    """Pressures at which the real sensor may meet it; null: not known."""
     above_rating: bool
     """True if it is above the rated pressure."""
     apex_height_outer_mm: float
@@ -91,7 +91,7 @@ class TaskGas:
     injected_mL: float
     """Air at ambient pressure to be injected into the vented sensor."""
     moved_mL: float
-    """Air at ambient pressure to be injected after the task before."""
+    """Air at ambient pressure to be injected, coming from the task before; negative: let out."""
     by_temperature_kPa_per_K: float
     """Change of the sealed pressure with temperature."""
     figure_by_temperature_percent_per_K: float | None
@@ -101,16 +101,16 @@ class TaskGas:
     hold_percent: float
     """Change of the figure that counts as held."""
     step_kPa: float | None
-    """Change of the driving pressure that changes the figure by as much; null: an extremum or a jump."""
+    """Change of the driving pressure that changes the figure by hold_percent; null: an extremum or a jump."""
     loss_kPa_per_min: float | None
     """Fall of the pressure by the leak; null: the leak is not known."""
     hold_s: float | None
-    """Time in which the leak changes the figure by as much; null: not known, or it never does."""
+    """Time in which the leak changes the figure by hold_percent; null: not known, or never."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfflineChange:
-    """A change of one input of the design, in the unit that its name states, and the figure that results."""
+    """A change of one input of the design by which a task comes nearer to being met."""
 
     what: str
     """Name of the input, with its unit."""
@@ -119,7 +119,7 @@ class OfflineChange:
     after: float
     """Value that is needed."""
     predicted: float
-    """The figure with it, by the model."""
+    """The required figure with that change, by the model."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,14 +133,14 @@ class TaskRecord:
     value: float
     """Required value, in the unit of the key."""
     reached: bool
-    """True if a driving pressure does it."""
+    """True if a driving pressure meets the task."""
     solutions: tuple[TaskSolution, ...]
-    """Driving pressures that do it, the preferred one first."""
+    """Driving pressures that meet it, the preferred one first."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReachedTask(TaskRecord):
-    """A task that a driving pressure does."""
+    """A task that a driving pressure meets."""
 
     gas: TaskGas
     """Gas of the preferred solution."""
@@ -148,12 +148,12 @@ class ReachedTask(TaskRecord):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MissedTask(TaskRecord):
-    """A task that no driving pressure does."""
+    """A task that no driving pressure meets."""
 
     possible_band: PressureInterval | None
-    """Pressures at which the sensor in hand may do it all the same; null: there are none."""
+    """Pressures at which the real sensor may still meet it, by its uncertainty; null: there are none."""
     offline: tuple[OfflineChange, ...]
-    """Changes of the design by which it would be reached, the least first."""
+    """Changes of the design, one input each, that bring the figure nearer to the value, the least first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +169,7 @@ class DrivingRecord:
     highest_kPa: float
     """Highest driving pressure that was computed."""
     limit: str
-    """Limit that ends the driving pressures."""
+    """Limit of the driving pressure that is met first."""
     is_fitted: bool
     """True if a calibration can cover the sensor."""
     dead_volume_mL: float

@@ -13,7 +13,7 @@ class LawRecord:
     name: str
     """Name of the law."""
     label: str
-    """In words."""
+    """Name of the law in words."""
     constants: tuple[float, ...]
     """Constants of the law: MPa, exponents without unit."""
     uncertainties: tuple[float | None, ...]
@@ -29,12 +29,12 @@ class TriedLaw(LawRecord):
     """A law that was fitted to the same data."""
 
     refused: str | None
-    """Why the law was not chosen; null: nothing is against it."""
+    """Reason why the law was not chosen; null: nothing is against it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PulledSpecimen:
-    """A measured specimen."""
+    """A specimen that was measured in tension."""
 
     data: str
     """Name of the data file."""
@@ -53,9 +53,9 @@ class MaterialFit:
     material: str
     """Name of the fitted material."""
     file: str
-    """Path of the file."""
+    """Path of the material file that was written."""
     test: Literal["tension", "puck"]
-    """The test in words."""
+    """Kind of test: a specimen in tension, or a puck between plates."""
     largest_stretch: float
     """Greatest stretch of the data that were fitted."""
     law: LawRecord
@@ -67,11 +67,11 @@ class MaterialFit:
     shear_modulus_uncertainty_MPa: float | None
     """Standard uncertainty of the neo-Hookean modulus; null: not determined."""
     specimens: tuple[PulledSpecimen, ...]
-    """Measured specimens."""
+    """Measured specimens; empty for a puck."""
     fits: tuple[TriedLaw, ...]
     """Every law that was fitted."""
     profile: str | None
-    """Profile that makes the material; null: none does."""
+    """Printer profile that makes the material; null: none does."""
     notes: tuple[str, ...]
     """Notes in words."""
     folder: str | None = None

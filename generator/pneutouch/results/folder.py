@@ -13,17 +13,17 @@ from pneutouch.results.tray import TrayJobRecord
 
 @dataclass(frozen=True, slots=True)
 class FileEntry:
-    """A file."""
+    """A file of the folder."""
 
     sha256: str
     """SHA-256 of the content, hexadecimal."""
     bytes: int
-    """Length of the file."""
+    """Size of the file in bytes."""
 
 
 @dataclass(frozen=True, slots=True)
 class BodyMesh:
-    """A body's mesh."""
+    """The mesh of a body."""
 
     triangles: int
     """Number of triangles."""
@@ -32,7 +32,7 @@ class BodyMesh:
     exact_volume_mm3: float | None = None
     """Volume of the exact solid."""
     tolerance_mm: float | None = None
-    """Tolerance that the mesh keeps."""
+    """Greatest distance from the exact surface that the mesh may have."""
     measured_deviation_mm: float | None = None
     """Greatest distance of the mesh from the exact surface."""
 
@@ -44,19 +44,19 @@ class SiliconeRecord:
     cavities: int
     """Number of cavities."""
     cavity_mL: float
-    """Volume of a cavity."""
+    """Volume of the silicone in one cavity."""
     channels_mL: float
-    """Volume of sprue and vents."""
+    """Volume of pour channel and vents of one cavity."""
     overflow_mL: float
-    """Volume that overflows."""
+    """Volume that may overflow at one cavity."""
     loss_mL: float
     """Volume that is lost in cup and syringe."""
     volume_mL: float
-    """Volume."""
+    """Volume to mix, with the loss."""
     mass_g: float
-    """Mass."""
+    """Mass to weigh, of all parts together."""
     parts_g: tuple[float, ...]
-    """Mass of each part of the silicone."""
+    """Mass to weigh of each part of the silicone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,19 +66,19 @@ class MouldRecord:
     cavities: int
     """Number of cavities."""
     parts: Mapping[str, int]
-    """Number of pieces of each part."""
+    """Number of pieces to print, by part."""
     scale: float
-    """Size of the mould over that of the membrane, for the shrinkage."""
+    """Lengths of the mould over those of the cured membrane, for the shrinkage."""
     mesh_tolerance_mm: float
     """Tolerance that the meshes keep."""
     wall_error_mm: float
-    """Greatest error of the wall by the fit of the parts."""
+    """Greatest error of the wall by the clearance between the parts."""
     release_strain_percent: float
     """Greatest strain of the membrane as it is taken off the core."""
     silicone: SiliconeRecord
     """Silicone that fills the mould once."""
     mesh: Mapping[str, BodyMesh]
-    """Meshes by body."""
+    """Meshes by part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Manifest:
     """Inputs of a folder, and the digest of every file in it; each command adds its own measurements."""
 
     name: str
-    """Name."""
+    """Name of the design, set or folder that the files belong to."""
     versions: Mapping[str, str]
     """Versions of the program and of the libraries that the bytes depend on."""
     files: Mapping[str, FileEntry]
@@ -94,11 +94,11 @@ class Manifest:
     inputs: Mapping[str, Any] | None = None
     """Everything that the folder follows from, as data."""
     input_hash: str | None = None
-    """Digest of the inputs and the version."""
+    """Short digest of the inputs and of the program's version."""
     mesh: Mapping[str, BodyMesh] | None = None
     """Meshes by body."""
     print_frame_offset_mm: tuple[float, float, float] | None = None
-    """From the design frame to the print frame."""
+    """Shift from the design frame to the print frame."""
     left_out: Mapping[str, str] | tuple[str, ...] | None = None
     """Parts left out, and the reasons."""
     mould: MouldRecord | None = None
@@ -106,9 +106,9 @@ class Manifest:
     estimates: tuple[JobEstimate, ...] | None = None
     """Resin and time of each print job."""
     glue_mL: float | None = None
-    """Glue of the seat."""
+    """Volume of glue for the seat."""
     findings: tuple[TrayFinding | Finding, ...] | None = None
-    """Findings."""
+    """Findings of the print rules."""
     jobs: tuple[TrayJobRecord, ...] | None = None
     """Print jobs of a tray."""
     resin_changes: str | None = None

@@ -17,7 +17,7 @@ class ReadColumn:
     unit: str
     """Unit of its values."""
     sign: int | None = None
-    """-1 if its values are turned over."""
+    """-1 if the rig counts in the opposite direction; left out: it does not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class ReadTables:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReadFiles(ReadTables):
-    """Files read alike, whose columns or layout were found by their look."""
+    """Files read alike, whose columns or layout were found from the files themselves."""
 
     files: tuple[str, ...]
     """Paths of the files."""
@@ -42,16 +42,16 @@ class ReadFiles(ReadTables):
 
 @dataclass(frozen=True, slots=True)
 class PredictedFigure:
-    """The predicted figure."""
+    """A predicted figure, read as the measured one is."""
 
     value: float
-    """Value."""
+    """Value of the figure."""
     low: float | None
-    """Lower end of the interval."""
+    """Lower end of the interval; null: not known."""
     high: float | None
-    """Upper end of the interval."""
+    """Upper end of the interval; null: not known."""
     measured_off_percent: float | None
-    """Measured over predicted, less 100 %."""
+    """Measured over predicted, less 100 %; null: the prediction is 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +61,9 @@ class CampaignFigure:
     value: float
     """Value."""
     low: float | None
-    """Lower end of the interval."""
+    """Lower end of the interval; null: there is none."""
     high: float | None
-    """Upper end of the interval."""
+    """Upper end of the interval; null: there is none."""
     unit: str
     """Unit of the value."""
     specimens: int
@@ -73,7 +73,7 @@ class CampaignFigure:
     interval_over: str | None
     """Source of the interval's scatter: specimens or runs; null: there is no interval."""
     predicted: PredictedFigure | None = None
-    """The predicted figure."""
+    """The predicted figure; left out: not predicted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class MeasuredGroup:
     """Runs of one resin, age and driving pressure."""
 
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     age: str
     """Age of the print, in words."""
     driving_pressure_kPa: float
@@ -102,24 +102,24 @@ class MeasuredGroup:
 
 @dataclass(frozen=True, slots=True)
 class DoubtfulPart:
-    """A part of the record that is doubtful."""
+    """A part of a run's record that may be wrong."""
 
     start_s: float
     """Start of the part."""
     end_s: float
     """End of the part."""
     why: str
-    """Reason."""
+    """Reason for the doubt."""
     used: bool
     """True if it was used all the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunWarning(DoubtfulPart):
-    """A part of the record that is doubtful, or a note on it."""
+    """A part of a run's record that may be wrong, or a note on it."""
 
     kind: str
-    """Kind."""
+    """Kind of the doubt: gap, clipped, spike, note, asked or other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,11 +129,11 @@ class RunOfSensor:
     file: str
     """Path of the file."""
     kind: RunKind
-    """Kind."""
+    """Kind of the run."""
     sensor: str
     """Name of the specimen."""
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     run: int
     """Number of the repetition."""
     driving_pressure_kPa: float
@@ -144,16 +144,16 @@ class RunOfSensor:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredRun(RunOfSensor):
-    """A run."""
+    """A run with the figures measured in it."""
 
     points: int
     """Number of points of the curve."""
     figures: Mapping[str, float]
     """Figures by name."""
     warnings: tuple[RunWarning, ...]
-    """Doubtful parts."""
+    """Parts of the record that may be wrong."""
     kind_by_record: bool = False
-    """True if the kind was not stated, and told from the record."""
+    """True if the campaign states no kind, and it was recognised from the record."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +163,7 @@ class InjectionFigure:
     sensor: str
     """Name of the specimen."""
     figure: str
-    """Name of the figure."""
+    """Name of the figure, with the run."""
     value: float
     """Value."""
     standard_error: float | None
@@ -174,27 +174,27 @@ class InjectionFigure:
 
 @dataclass(frozen=True, slots=True)
 class AgeingChange:
-    """The change of the sensitivity with age."""
+    """The change of the sensitivity with age, in one resin at one driving pressure."""
 
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     age: str
     """Age of the print, in words."""
     sensitivity_change_percent: float
-    """Change of the sensitivity, of the aged one as in the paper's Supplement E."""
+    """Aged less fresh sensitivity, over the aged one as in the paper's Supplement E."""
     low: float | None
     """Lower end of the interval."""
     high: float | None
     """Upper end of the interval."""
     published_change_one_year_percent: float | None
-    """Published change within a year."""
+    """Change within a year that the paper measured; null: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A requirement of the target against its measurement."""
+    """A requirement of a target against its measurement."""
 
     what: str
     """Required figure."""
@@ -203,7 +203,7 @@ class Verdict:
     measured: str
     """Measured value."""
     passed: bool | None
-    """True if it is met; null: the interval holds values on both sides, and more specimens would decide."""
+    """True if it is met; null: the interval holds values on both sides, or there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +223,7 @@ class FileFailure:
     file: str
     """Path of the file."""
     message: str
-    """In words."""
+    """Reason, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +231,7 @@ class MeasuredCampaign:
     """Figures of a campaign, measured and predicted."""
 
     title: str
-    """Title."""
+    """Title of the campaign."""
     lab: str
     """Laboratory that measured."""
     simulated: bool
@@ -239,26 +239,26 @@ class MeasuredCampaign:
     design: str
     """Name of the design."""
     input_hash: str
-    """Digest of the inputs and the version."""
+    """Short digest of the inputs and of the program's version."""
     model: str
-    """Model that computed it."""
+    """Model that predicted the figures."""
     level: float
-    """Level of the intervals."""
+    """Probability of the intervals, from 0 to 1."""
     groups: tuple[MeasuredGroup, ...]
-    """Runs of one resin, age and driving pressure."""
+    """Groups of runs of one resin, age and driving pressure."""
     runs: tuple[MeasuredRun, ...]
-    """Runs."""
+    """Runs with their figures."""
     injections: tuple[InjectionFigure, ...]
-    """Figures of injections."""
+    """Figures of leak runs and of injections."""
     ageing: tuple[AgeingChange, ...]
-    """Changes with age."""
+    """Changes of the sensitivity with age."""
     target: tuple[Verdict, ...]
-    """The target."""
+    """Requirements of the target against their measurements; empty: no target."""
     questions: tuple[DataQuestion, ...]
-    """Parts of the data to look at."""
+    """Data that look wrong and were not changed."""
     failures: tuple[FileFailure, ...]
     """Files that could not be used."""
     read_as: tuple[ReadFiles, ...]
-    """Columns and formats that were found by the look of the files."""
+    """Columns and formats that were found from the files themselves."""
     folder: str | None = None
     """Folder that it was written to; only in the output of the command."""

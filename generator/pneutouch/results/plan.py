@@ -12,44 +12,44 @@ from pneutouch.spec.campaign import RunKind
 
 @dataclass(frozen=True, slots=True)
 class PlannedStep:
-    """One step of rig or hand."""
+    """One step of a run, by rig or hand."""
 
     action: str
-    """Step of rig or hand."""
+    """Name of the step, such as move or wait."""
     value: float | None
     """Value that it sets; null: it sets none."""
     unit: str
-    """Unit of the value."""
+    """Unit of the value; empty without one."""
     seconds: float
     """Time that it takes, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedPoint:
-    """A depth; the readings are null beyond the predicted range."""
+    """The readings expected at a depth; null beyond the predicted range."""
 
     depth_mm: float
     """Plate travel after first contact."""
     force_N: float | None
     """Contact force; null beyond the predicted range."""
     pressure_rise_kPa: float | None
-    """Cavity pressure less driving pressure."""
+    """Cavity pressure less driving pressure; null beyond the predicted range."""
     cavity_pressure_kPa: float | None
-    """Gauge pressure in the cavity."""
+    """Gauge pressure in the cavity; null beyond the predicted range."""
 
 
 @dataclass(frozen=True, slots=True)
 class InjectedVolume:
-    """A volume of air that is pushed into the sensor."""
+    """A volume of air that is pushed into the vented sensor, and the pressures that it gives."""
 
     volume_mL: float
-    """Volume."""
+    """Volume of room air, in all."""
     pressure_kPa: float
-    """Pressure that is read."""
+    """Expected gauge pressure, with the dead volume of the design."""
     without_dead_volume_kPa: float
     """Pressure if there were no dead volume."""
     with_more_dead_volume_kPa: float
-    """Pressure with more dead volume."""
+    """Pressure if more_dead_volume_mL were added to the dead volume."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,22 +59,22 @@ class PlannedInjection:
     dead_volume_mL: float
     """Gas volume behind the cavity."""
     cavity_volume_mL: float
-    """Gas under the inflated dome, before contact."""
+    """Gas under the unloaded dome."""
     sensor_volume_mL: float | None
-    """Air to be injected into the sensor; null: none of the round volumes fits."""
+    """Air to be injected into the sensor, in all; null: no round volume fits."""
     sensor: tuple[InjectedVolume, ...]
     """Volumes that are pushed into the sensor in turn."""
     more_dead_volume_mL: float
-    """Dead volume that is added."""
+    """Dead volume that is added in with_more_dead_volume_kPa."""
     line_volume_mL: float | None
-    """Air to be injected into the line alone."""
+    """Air to be injected into the closed line alone; null: no round volume fits."""
     line_pressure_kPa: float | None
-    """Pressure of the line alone after that volume."""
+    """Pressure of the line alone after that volume; null: none is injected."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedState:
-    """One driving pressure."""
+    """Expected readings at one driving pressure."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
@@ -91,29 +91,29 @@ class PlannedResin:
     """Expected readings of one resin."""
 
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     model: str
-    """Model that computed it."""
+    """Model that computed the readings."""
     states: tuple[PlannedState, ...]
     """One entry a driving pressure."""
     injection: PlannedInjection
-    """Injection of air, which gives the dead volume."""
+    """Injection of air, which measures the dead volume."""
     limit_kPa: float
-    """Limit of the pressure."""
+    """Least limit of the driving pressure."""
     limit_by: str
-    """Limit that is met first."""
+    """Name of that limit."""
     rating: RatingRecord
     """Rated pressure and what it follows from."""
     leak_limit_kPa_per_min: float | None
-    """Leak that is allowed."""
+    """Greatest leak that is allowed; null: not known."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedTest:
-    """A kind of run."""
+    """A kind of run: its movements, driving pressures and repetitions."""
 
     depths_mm: tuple[float, ...]
-    """Plate travels."""
+    """Plate travels after first contact at which the plate stops, in order."""
     hold_s: float
     """Hold at each travel."""
     rest_s: float
@@ -123,7 +123,7 @@ class PlannedTest:
     speed_mm_per_s: float
     """Speed of the plate."""
     duration_s: float
-    """Time that it takes."""
+    """Time that one run takes."""
     driving_pressures_kPa: tuple[float, ...]
     """Gauge pressures before contact."""
     runs: int
@@ -132,38 +132,38 @@ class PlannedTest:
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """A run."""
+    """A run of the plan."""
 
     number: int
     """Number of the run in the plan."""
     kind: RunKind
-    """Kind."""
+    """Kind of the run."""
     sensor: str
     """Name of the specimen."""
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     run: int
     """Number of the repetition."""
     file: str
-    """Path of the file."""
+    """Path of the file to be measured."""
     steps: tuple[PlannedStep, ...]
     """Steps in order."""
     expected: tuple[ExpectedPoint, ...]
     """Expected readings, one entry a depth."""
     duration_s: float
-    """Time that it takes."""
+    """Time that the run takes."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedSpecimen:
-    """A specimen."""
+    """A specimen of the plan."""
 
     sensor: str
     """Name of the specimen."""
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,11 +173,11 @@ class PlanViolation:
     rule: str
     """Name of the rule."""
     message: str
-    """In words."""
+    """Problem, in words."""
     resin: str
-    """Name of its material; empty: every one."""
+    """Name of the membrane's resin; empty: every one."""
     driving_pressure_kPa: float | None
-    """Gauge pressure before contact."""
+    """Gauge pressure before contact; null: every one."""
     depth_mm: float | None
     """Plate travel after first contact."""
 
@@ -187,11 +187,11 @@ class PlannedCampaign:
     """A measurement campaign, run by run."""
 
     name: str
-    """Name."""
+    """Name of the plan."""
     design: str
     """Name of the design."""
     title: str
-    """Title."""
+    """Title of the design."""
     inner_radius_mm: float
     """Inner radius R0 of the unloaded dome."""
     wall_thickness_mm: float
@@ -207,22 +207,22 @@ class PlannedCampaign:
     contact: Mapping[str, Any] | None = None
     """Object that presses the sensor; left out for a frictionless plate."""
     clearance_mm: float
-    """Distance of the plate before each press."""
+    """Distance between plate and dome before and after each press."""
     plate_diameter_mm: float
     """Diameter of the flat plate."""
     rig: Mapping[str, Any]
     """The rig."""
     sensors: tuple[PlannedSpecimen, ...]
-    """Specimens."""
+    """Specimens to be measured."""
     resins: tuple[PlannedResin, ...]
     """Expected readings of each resin."""
     tests: Mapping[str, PlannedTest]
     """Kinds of runs by name."""
     runs: tuple[PlannedRun, ...]
-    """Runs."""
+    """Runs in order."""
     total_s: float
     """Time of the whole campaign."""
     warnings: tuple[PlanViolation, ...]
-    """Parts where the rig cannot follow."""
+    """Parts that the rig or the sensor cannot follow."""
     folder: str | None = None
     """Folder that it was written to; only in the output of the command."""

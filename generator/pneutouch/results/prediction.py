@@ -19,7 +19,7 @@ class SensitivityError:
     basis: str
     """Reference that the error was found against."""
     summary: str
-    """The same in a sentence."""
+    """Errors and their basis in a sentence."""
     by_pressure: tuple[float | None, ...] = ()
     """Relative errors at 0 and 22 kPa, where the paper measured them."""
 
@@ -29,13 +29,13 @@ class ErrorEstimate:
     """Stated errors of a prediction: relative ones as fractions, and a summary in sentences."""
 
     limit_pressure_relative: float
-    """Known error of the limit pressure."""
+    """Known relative error of the limit pressure."""
     sensitivity_relative: float | None
     """Greatest known error of the sensitivity; null: not known."""
     sensitivity_basis: str = ""
-    """Basis of the error of the sensitivity."""
+    """Reference that the error of the sensitivity was found against."""
     sensitivity_relative_0kPa_22kPa: tuple[float | None, ...] = ()  # noqa: N815
-    """The same without driving pressure and at 22 kPa."""
+    """Errors of the sensitivity without driving pressure and at 22 kPa."""
     sensitivity_discretisation_relative: float | None = None
     """Error of the sensitivity by the mesh."""
     sensitivity_tabulation_relative: float | None = None
@@ -45,12 +45,12 @@ class ErrorEstimate:
     apex_height_relative: float | None = None
     """Known error of the apex heights."""
     model_choice: str | None = None
-    """Why this model was taken."""
+    """Reason why ``auto`` took this model."""
     summary: tuple[str, ...] = ()
-    """In sentences."""
+    """The errors, in sentences."""
 
     def with_sensitivity(self, error: SensitivityError) -> ErrorEstimate:
-        """The same with the known error in sensitivity."""
+        """Copy with the known error of the sensitivity, its sentence added to the summary."""
         return replace(
             self,
             sensitivity_relative=error.relative,
@@ -85,18 +85,18 @@ class EventRecord:
     """An event on a loading curve."""
 
     kind: str
-    """Kind."""
+    """Kind of the event."""
     indentation_mm: float
     """Travel of the object after first contact."""
     ends_range: bool
     """True if figures hold up to there alone."""
     message: str
-    """In words."""
+    """The event in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShearRecord:
-    """An object that moves sideways after pressing: lists of one length, and figures, None if they are not reached."""
+    """An object that moves sideways after pressing: lists of one length, and figures, null if they are not reached."""
 
     shear_mm: tuple[float, ...]
     """Travel sideways at constant height."""
@@ -109,15 +109,15 @@ class ShearRecord:
     pressure_rise_kPa: tuple[float, ...]
     """Cavity pressure less driving pressure."""
     sliding_percent: tuple[float, ...]
-    """Share of the contact that slides."""
+    """Share of the contact that slips."""
     stiffness_N_per_mm: float | None
-    """Mean slope of contact force over indentation, first contact to range end."""
+    """Initial slope of the force against the travel sideways, while every point sticks."""
     peak_sideways_force_N: float | None
     """Sideways force where it is greatest; null: not reached."""
     slips_throughout_mm: float | None
-    """First travel at which every point of the contact slides; null: not reached."""
+    """First travel at which every point of the contact slips; null: not reached."""
     ended: str | None
-    """Why it ended early."""
+    """Reason why the travel ended early; null: it did not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,18 +127,18 @@ class OffAxisRecord:
     harmonics: int
     """Greatest order of the harmonics that were taken."""
     last_change_percent: float
-    """Change by the last raise of their order."""
+    """Change of the results by the last increase of their order."""
     sideways_force_N: tuple[float, ...]
     """Force of the dome on the object towards the offset."""
     moment_N_mm: tuple[float, ...]
     """Moment of the dome on the object about the centre of the base plane."""
     shear: ShearRecord | None = None
-    """The object moves sideways after pressing; lists of one length."""
+    """Movement sideways after the press; left out: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateRecord:
-    """A sensor at one driving pressure; figures are None where no line can be fitted."""
+    """A sensor at one driving pressure; figures are null where no line can be fitted."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
@@ -153,7 +153,7 @@ class StateRecord:
     sensitivity_kPa_per_N: float | None
     """Slope of the pressure rise over the contact force, first contact to range end."""
     sensitivity_through_origin_kPa_per_N: float | None
-    """The slope of a line through the origin."""
+    """Slope of a line through the origin, pressure rise over contact force."""
     r_squared: float | None
     """Coefficient of determination of the straight line."""
     nonlinearity_percent: float | None
@@ -165,7 +165,7 @@ class StateRecord:
     saturation_force_N: float | None
     """Force at which the local slope falls below half of the fitted one; null: there is none."""
     curve: Curve
-    """Curve, lists of one length."""
+    """Loading curve, lists of one length."""
     events: tuple[EventRecord, ...]
     """Events along the curve."""
     off_axis: OffAxisRecord | None = None
@@ -176,14 +176,14 @@ class StateRecord:
 
 @dataclass(frozen=True, slots=True)
 class LimitPointRecord:
-    """The limit point; stretches by the membrane theory alone."""
+    """The limit point of free inflation; stretches by the membrane theory alone."""
 
     driving_pressure_kPa: float
-    """Gauge pressure before contact."""
+    """Greatest gauge pressure of the inflation."""
     apex_height_inner_mm: float
-    """Apex height of the inner surface, inflated, before contact."""
+    """Apex height of the inner surface at the limit point."""
     apex_height_outer_mm: float
-    """Apex height of the outer surface, inflated, before contact."""
+    """Apex height of the outer surface at the limit point."""
     membrane_stretch: float | None = None
     """Stretch of the wall's middle surface at the pole."""
     thickness_stretch: float | None = None
@@ -201,23 +201,23 @@ class LimitsRecord:
     gauge_range_kPa: float
     """Greatest gauge pressure that the gauge reads."""
     binding: str
-    """The limit that is met first."""
+    """Name of the limit that is met first."""
     law_range_kPa: float | None = None
-    """Driving pressure at which the wall leaves the stretches that its law was fitted to."""
+    """Driving pressure at which the wall leaves the stretches that its law was fitted to; left out: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class InflationRecord:
-    """Free inflation, lists of one length."""
+    """Free inflation without contact, lists of one length."""
 
     apex_height_inner_mm: tuple[float, ...]
-    """Apex height of the inner surface, inflated, before contact."""
+    """Apex height of the inner surface."""
     apex_height_outer_mm: tuple[float, ...]
-    """Apex height of the outer surface, inflated, before contact."""
+    """Apex height of the outer surface."""
     cavity_volume_mL: tuple[float, ...]
-    """Gas under the inflated dome, before contact."""
+    """Gas under the dome."""
     driving_pressure_kPa: tuple[float, ...]
-    """Gauge pressure before contact."""
+    """Gauge pressure in the cavity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,11 +225,11 @@ class RatingFinding:
     """A driving pressure above the rated pressure."""
 
     severity: Literal["error", "warning"]
-    """Severity."""
+    """Severity of the finding."""
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     message: str
-    """In words."""
+    """The finding in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,11 +239,11 @@ class RatingRecord:
     rated_pressure_kPa: float
     """Greatest driving pressure to be used."""
     share: float
-    """Share of the lower end that is allowed."""
+    """Share of the lower end of the limit's interval that is allowed."""
     coverage_factor: float
-    """Coverage factor of the intervals."""
+    """Coverage factor of the limit's interval."""
     limit: str
-    """Limit that it follows from."""
+    """Name of the limit that the rated pressure follows from."""
     limit_kPa: float
     """Pressure of that limit."""
     limit_low_kPa: float
@@ -251,13 +251,13 @@ class RatingRecord:
     limit_high_kPa: float
     """Upper end of the limit's interval."""
     basis: str
-    """Basis of it."""
+    """Derivation of the rated pressure, in words."""
     rated_pressure_with_measured_modulus_kPa: float | None
     """The rated pressure if coupons confirmed the modulus; null: the same."""
     remedy: str | None
-    """Advice that would raise it; null: none."""
+    """Advice that would raise the rated pressure; null: none."""
     findings: tuple[RatingFinding, ...]
-    """Findings."""
+    """Driving pressures above the rated pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,15 +277,15 @@ class ByMixingCurve:
     """The sensor by one mixing curve of its mix."""
 
     curve: str
-    """Curve, lists of one length."""
+    """Name of the mixing curve."""
     place: Literal["softer", "in use", "stiffer"]
     """Place relative to the curve in use."""
     shear_modulus_MPa: float
-    """Small-strain shear modulus."""
+    """Small-strain shear modulus by this curve."""
     beyond_last_point: bool
     """True if a fraction is beyond the curve's last point."""
     rated_pressure_kPa: float | None
-    """Greatest driving pressure to be used."""
+    """Greatest driving pressure to be used; null: nothing could be computed."""
     states: tuple[MixState, ...]
     """One entry a driving pressure."""
 
@@ -327,14 +327,14 @@ class PredictionRecord:
     contact_anywhere: ContactAnywhere | None = None
     """Errors of the force read where object and place are unknown."""
     viscous: Viscous | None = None
-    """Relaxation and hysteresis, or why they are unknown."""
+    """Relaxation and hysteresis, or the reason why they are unknown."""
     dynamics: Dynamics | None = None
     """Speed of the reading."""
     gauge: GaugeFigures | None = None
-    """Pressure gauge."""
+    """Pressure gauge of the design; left out: none is named."""
     mixing_curves: tuple[ByMixingCurve, ...] = ()
     """The sensor by every mixing curve of its mix, the softest first."""
     calibration: CalibratedBy | None = None
-    """Calibration of the sensor in hand."""
+    """Calibration of the sensor in hand; left out: the design as drawn."""
     aged: Aged | None = None
-    """Ageing that is counted."""
+    """Ageing that the prediction counts; left out: none."""

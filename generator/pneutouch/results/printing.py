@@ -32,9 +32,9 @@ class Finding:
     severity: Severity
     """Severity."""
     body: str
-    """Name of the body."""
+    """Name of the body that it is about."""
     message: str
-    """In words."""
+    """Problem, in words."""
     fix: str
     """Remedy."""
     source: str
@@ -42,11 +42,11 @@ class Finding:
     where_mm: tuple[float, float, float] | None
     """Place in the design frame; null: the whole body."""
     excess: Excess | None
-    """Excess over the limit; null: there is no number."""
+    """Measured value and limit; null: the finding has no number."""
 
     @property
     def rank(self) -> int:
-        """Place of the severity in a list of findings: errors come first."""
+        """Order of the severity in a list of findings: errors, then warnings, then notes."""
         return get_args(Severity).index(self.severity)
 
     @property
@@ -63,19 +63,19 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class TrayFinding(Finding):
-    """A finding of a print rule on a part of a tray."""
+    """A finding of a print rule on a part of a tray, and on all parts of its shape."""
 
     labels: tuple[str, ...]
     """Labels of all parts of the same shape."""
 
     @property
     def parts(self) -> str:
-        """The labels in short."""
+        """The first label, with the number of further ones."""
         return self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
 
     @property
     def text(self) -> str:
-        """One line: the place, the problem and the remedy."""
+        """One line: severity, parts, rule, problem and remedy."""
         return f"{self.severity}: {self.parts}: {self.rule}: {self.message}; {self.fix}"
 
 
@@ -86,21 +86,21 @@ class ItemEstimate:
     name: str
     """Name of the body."""
     volume_mL: float
-    """Volume."""
+    """Volume of the body."""
     mass_g: float
-    """Mass."""
+    """Mass of the body."""
     resins_mL: Mapping[str, float]
     """Resins by name; those of a digital material without a measured mix together."""
 
 
 @dataclass(frozen=True, slots=True)
 class JobEstimate:
-    """Resin and time of a print job. What is cast has no layers."""
+    """Resin and time of a print job, or of a casting, which has no layers."""
 
     job: str
     """Name of the job."""
     printer: str
-    """Printer."""
+    """Title of the printer."""
     mode: str
     """Print mode."""
     items: tuple[ItemEstimate, ...]
@@ -110,12 +110,12 @@ class JobEstimate:
     resins_mL: Mapping[str, float]
     """Resins of all bodies by name."""
     support_mL: float
-    """Support."""
+    """Volume of the support material."""
     layers: int | None
     """Number of layers; null: it is cast."""
     swaths: int | None
     """Number of swaths of the heads; null: there are none, or their width is not known."""
     time_min: float | None
-    """Time; null: the printer's profile does not state enough."""
+    """Time of the print, or of the cure; null: the profile does not state enough."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""

@@ -13,29 +13,29 @@ class ForceTable:
     driving_pressure_kPa: tuple[float, ...]
     """Gauge pressure before contact, equal steps, one a row; rows below zero serve other conditions alone."""
     pressure_rise_kPa: tuple[tuple[float, ...], ...]
-    """Gauge pressure less driving pressure; ascending along a row from 0."""
+    """Gauge pressure less driving pressure, one list a row; ascending along a row from 0."""
     contact_force_N: tuple[tuple[float, ...], ...]
-    """Force at these rises; ascending along a row from 0."""
+    """Force at these rises, one list a row; ascending along a row from 0."""
     indentation_mm: tuple[float, ...]
-    """Indentation of the last column of each row."""
+    """Indentation of the last column, by row."""
     pressure_factor: tuple[float, ...]
     """Pressure rise of the sensor over that of the gas law, by row: 1 without a calibration."""
     force_uncertainty_relative: tuple[tuple[float, ...], ...] | None
-    """Standard uncertainty (k = 1) of the force over the force, without the gauge's noise; null: unknown."""
+    """Relative standard uncertainty (k = 1) of the force, without the gauge's noise, by row; null: unknown."""
     force_uncertainty_unknown: str | None
-    """Reason why it is unknown."""
+    """Reason why the uncertainty is unknown; null: it is known."""
     force_uncertainty_age_days: float
-    """Time since the calibration, or since the print of a sensor without one, whose ageing it counts."""
+    """Time since the calibration, else since the print, whose ageing the uncertainty counts."""
 
 
 @dataclass(frozen=True, slots=True)
 class GasTable:
-    """Gas without contact over the driving pressure."""
+    """Gas volume without contact, over the driving pressure."""
 
     driving_pressure_kPa: tuple[float, ...]
     """Gauge pressure before contact, equal steps."""
     volume_mL: tuple[float, ...]
-    """Cavity and dead volume there."""
+    """Cavity and dead volume at these pressures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,17 +45,17 @@ class ReaderBox:
     driving_pressure_kPa: tuple[float, ...]
     """Least and greatest driving pressure."""
     driving_pressure_margin_kPa: float
-    """Distance below it at which a driving pressure still counts as inside."""
+    """Distance below the least driving pressure within which one still counts as inside."""
     contact_force_N: tuple[float, float]
-    """Greatest over all driving pressures; at one it ends with the row."""
+    """Zero, and the greatest force over all driving pressures; at one of them it ends with the row."""
     pressure_rise_kPa: tuple[float, float]
-    """Least and greatest pressure rise."""
+    """Zero, and the greatest pressure rise over all driving pressures."""
     indentation_mm: tuple[float, float]
-    """Least and greatest indentation."""
+    """Zero, and the greatest indentation over all driving pressures."""
     ambient_pressure_kPa: tuple[float, ...]
     """Least and greatest ambient pressure, absolute."""
     temperature_change_K: float
-    """Change of the gas since the tare, up or down. The wall is taken as unchanged."""
+    """Greatest change of the gas temperature since the tare, up or down. The wall is taken as unchanged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,17 +65,17 @@ class ReaderRating:
     driving_pressure_kPa: float
     """Greatest driving pressure to be used."""
     basis: str
-    """Basis of it."""
+    """Derivation of the rated pressure, in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReadGauge:
-    """The gauge that is read."""
+    """The gauge whose pressure is read."""
 
     name: str | None
     """Gauge of the design; null: none is named."""
     range_kPa: tuple[float, ...]
-    """Gauge pressures that it reads; outside it is saturated."""
+    """Least and greatest gauge pressure that it reads; outside it is saturated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,20 +87,20 @@ class ZeroDrift:
     temperature_rate_K_per_h: float
     """Fastest change of the air's temperature."""
     drift_rate_kPa_per_s: float
-    """Both together: a faster change is no drift."""
+    """Drift at that fastest change: a faster change of the pressure is no drift."""
     drift_most_kPa: float
     """Greatest drift since the tare that is followed."""
     noise_least_kPa: float
-    """Least noise that counts."""
+    """Noise that the gauge is taken to have at least."""
     noise_most_kPa: float
-    """Scatter of readings without contact up to which they are a tare."""
+    """Scatter of readings without contact up to which they count as a tare."""
     filter_s: float
-    """Time constant of the mean that is set against the zero."""
+    """Time constant of the mean that is compared with the zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReaderConditions:
-    """Object and conditions that the grid holds for."""
+    """Object and conditions for which the table of the force was computed."""
 
     driving_pressures_kPa: tuple[float, ...]
     """Driving pressures of the design."""
@@ -109,7 +109,7 @@ class ReaderConditions:
     dead_volume_mL: float
     """Gas volume behind the cavity."""
     contact: str
-    """Object that presses the sensor, and its place: another object reads otherwise."""
+    """Object that presses the sensor, and its place: under another one the force read is wrong."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""
 
@@ -123,7 +123,7 @@ class ReaderTables:
     calibration: str | None
     """Name of the calibration; null: the design as drawn."""
     model: str
-    """Model that computed the grid."""
+    """Model that computed the table of the force."""
     units: Mapping[str, str]
     """Units by quantity."""
     grid: ForceTable
@@ -139,28 +139,28 @@ class ReaderTables:
     zero: ZeroDrift
     """Drift of the zero that is followed."""
     conditions: ReaderConditions
-    """Object and conditions that the grid holds for."""
+    """Object and conditions for which the table of the force was computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class TableError:
-    """Largest difference of the force from the full model, at random states that the grid does not hold."""
+    """Largest difference of the force read from the full model, at random states between those of the table."""
 
     nominal_N: float
-    """Difference at the conditions of the tare."""
+    """Difference under the conditions of the tare."""
     nominal_percent: float
-    """The same over full scale."""
+    """That difference over full scale."""
     other_conditions_N: float
     """Difference at other temperatures of the gas and other ambient pressures."""
     other_conditions_percent: float
-    """The same over full scale."""
+    """That difference over full scale."""
     states: int
-    """Number of states."""
+    """Number of states compared under the conditions of the tare."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReaderSource:
-    """Origin of a reader."""
+    """Inputs and program that a reader was made from."""
 
     sha256: str
     """Digest of the design with all that it names, the calibration, the options and the version."""
@@ -170,17 +170,17 @@ class ReaderSource:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReaderRecord(ReaderTables):
-    """Contact force from the gauge pressure of one sensor."""
+    """A reader: the contact force from the gauge pressure of one sensor."""
 
     difference: TableError
-    """Largest difference from the full model."""
+    """Largest difference of the force read from the full model."""
     source: ReaderSource
-    """Origin."""
+    """Inputs and program that it was made from."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimulatedState:
-    """A driving pressure of a simulated sensor."""
+    """A driving pressure of a sensor in a simulator."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
@@ -198,29 +198,29 @@ class SimulatedState:
 
 @dataclass(frozen=True, slots=True)
 class SimulatorRecord:
-    """A sensor as a model of a simulator."""
+    """A sensor written as a model for a simulator."""
 
     design: str
     """Name of the design."""
     simulator: str
-    """Format of the model."""
+    """Format of the model: mujoco or urdf."""
     model: str
     """Model that computed it."""
     version: str
     """Version of the program."""
     mass_g: float
-    """Mass."""
+    """Mass of the sensor."""
     centre_of_mass_mm: tuple[float, ...]
     """Centre of mass in the design frame."""
     inertia_about_centre_g_mm2: tuple[tuple[float, ...], ...]
-    """Inertia about the centre of mass."""
+    """Inertia tensor about the centre of mass, row by row."""
     states: tuple[SimulatedState, ...]
     """One entry a driving pressure."""
 
 
 @dataclass(frozen=True, slots=True)
 class DomePress:
-    """The press at one driving pressure, lists of one length over the indentation, in SI units but for the kPa."""
+    """The press at one driving pressure, lists of one length over the indentation; lengths in m, pressures in kPa."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
@@ -231,24 +231,24 @@ class DomePress:
     force_N: tuple[float, ...]
     """Force on the object."""
     force_slope_N_per_m: tuple[float, ...]
-    """Slope of the force."""
+    """Slope of the force over the indentation."""
     pressure_kPa: tuple[float, ...]
-    """Gauge pressure."""
+    """Gauge pressure in the cavity."""
     pressure_slope_kPa_per_m: tuple[float, ...]
-    """Slope of the pressure."""
+    """Slope of the pressure over the indentation."""
 
 
 @dataclass(frozen=True, slots=True)
 class DomeTable:
-    """Table of the module that gives a joint of a simulator the force of the dome."""
+    """Table of the module that applies the force of the dome to a joint of a simulator."""
 
     name: str
     """Name of the design."""
     radius_m: float
     """Radius of the sphere that stands for the dome."""
     inertia_share: float
-    """Inertia of the joint in greatest stiffness times time step squared."""
+    """Inertia of the joint over greatest stiffness times time step squared."""
     damping_share: float
-    """Damping of the joint in time step times greatest stiffness."""
+    """Damping of the joint over greatest stiffness times time step."""
     states: tuple[DomePress, ...]
     """One entry a driving pressure."""

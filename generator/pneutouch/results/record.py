@@ -1,7 +1,7 @@
 """Records as plain data.
 
 A record is a frozen dataclass: its fields are the keys of a document, in their order, and the text below a field is its
-help. A field without a default is always written. A field with one is left out of a document while it holds it.
+help. A field without a default is always written; one with a default is left out of a document while it has that value.
 Standard dataclasses, not pydantic's: records are made by this program alone and need no validation.
 """
 
@@ -20,7 +20,7 @@ Extended = TypeVar("Extended")
 
 
 def plain(value: Any) -> Any:
-    """JSON data of a record, of a mapping or sequence of records, or of a number or text."""
+    """JSON data of a record, a mapping, a sequence, an array or a plain value, with all that it holds."""
     if dataclasses.is_dataclass(value):
         return {
             f.name: plain(held) for f in dataclasses.fields(value) if not left_out(f, held := getattr(value, f.name))
@@ -36,12 +36,12 @@ def plain(value: Any) -> Any:
 
 
 def left_out(field: dataclasses.Field[Any], held: Any) -> bool:
-    """True if a document leaves a field out because it holds its default."""
+    """True if a document leaves out ``field``, because its value ``held`` is its default."""
     if field.default is dataclasses.MISSING:
         return False
     return held is field.default or (isinstance(held, tuple | str) and held == field.default)
 
 
 def extended(kind: type[Extended], base: Any, /, **more: Any) -> Extended:
-    """A record of a kind that has the fields of ``base``, and ``more``."""
+    """Record of a ``kind`` that has all fields of the record ``base``, with their values, and ``more``."""
     return kind(**{f.name: getattr(base, f.name) for f in dataclasses.fields(base)} | more)

@@ -11,33 +11,33 @@ class BarsRecord:
     """A row of bars in the specimen."""
 
     name: str
-    """Name."""
+    """Name of the pattern."""
     pitch_mm: float
     """Pitch of the bars."""
     width_mm: float
-    """Width."""
+    """Width of a bar along the path."""
     height_mm: float
-    """Height."""
+    """Height of a bar."""
     depth_mm: float
     """Depth of the upper faces below the scanned surface."""
     from_mm: float
-    """Start of the stretch of travel."""
+    """Start of the first bar along the path."""
     to_mm: float
-    """End of the stretch of travel."""
+    """End of the last bar along the path."""
     frequency_Hz: float
     """Speed of the scan over the pitch."""
     bending_length_mm: float | None
     """Length over which a bar spreads a load; null: the modulus of its material is not known."""
     noise_amplitude_kPa: float
-    """Reading of noise alone at this frequency."""
+    """Amplitude that noise alone shows at this frequency."""
 
 
 @dataclass(frozen=True, slots=True)
 class SoughtPattern:
-    """A row of bars looked for in a signal; model amplitudes only if it is simulated."""
+    """A row of bars that is looked for in a signal; amplitudes by the model only if the signal is simulated."""
 
     name: str
-    """Name."""
+    """Name of the pattern."""
     true_frequency_Hz: float
     """Frequency that the specimen and the speed give."""
     detected: bool
@@ -45,33 +45,33 @@ class SoughtPattern:
     model_amplitude_kPa: float | None = None
     """Amplitude of the pressure by the model, without noise."""
     sinking_amplitude_um: float | None = None
-    """Amplitude of the sinking of the specimen's surface under the preload."""
+    """Amplitude, along the path, of the sinking of the surface under the preload."""
     relief_equivalent_um: float | None = None
-    """Amplitude of a rigid relief that would read the same."""
+    """Amplitude of a rigid relief that would give the same reading."""
     detected_frequency_Hz: float | None = None
-    """Frequency of the highest amplitude near the true one."""
+    """Frequency of the greatest amplitude near the true one."""
     amplitude_kPa: float | None = None
     """Pressure amplitude at the detected frequency, averaged over time."""
     noise_floor_kPa: float | None = None
-    """Amplitude without the pattern."""
+    """Amplitude expected without the pattern."""
     detection_figure: float | None = None
     """Amplitude over noise floor."""
     threshold: float | None = None
     """Amplitude over noise floor that noise alone passes in the stated share of records."""
     p_value: float | None = None
-    """Share of noise records with the same amplitude over floor or more."""
+    """Share of noise records whose amplitude over noise floor is as great or greater."""
     level: float | None = None
-    """Greatest p-value of a detection."""
+    """Greatest p-value that counts as a detection."""
     frequency_error_relative: float | None = None
     """Detected frequency over the true one, less one."""
 
 
 @dataclass(frozen=True, slots=True)
 class SignalRecord:
-    """A measured signal."""
+    """A signal, and the patterns that were looked for in it."""
 
     label: str
-    """In words."""
+    """Name of the signal in words."""
     signal: str
     """File of the signal."""
     duration_s: float
@@ -82,26 +82,26 @@ class SignalRecord:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedSignal(SignalRecord):
-    """A simulated signal, and the contact that it was simulated with."""
+    """A simulated signal, and the contact at the preload that it was simulated with."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     contact_radius_mm: float
-    """Radius of the edge of contact."""
+    """Radius of the edge of contact at the preload."""
     indentation_mm: float
-    """Travel of the object after first contact."""
+    """Indentation at the preload."""
     stiffness_N_per_mm: float
-    """Mean slope of contact force over indentation, first contact to range end."""
+    """Slope of the force over the indentation at the preload, gas included."""
     pressure_slope_kPa_per_mm: float
-    """Change of the cavity pressure with indentation."""
+    """Slope of the cavity pressure over the indentation at the preload."""
     pressure_kPa: float
-    """Pressure that is read."""
+    """Gauge pressure at the preload."""
     model: str
     """Model that computed it."""
     specimen_compliance_mm_per_N: float
-    """Mean sinking of the specimen's surface over the force."""
+    """Sinking of the specimen's surface over the force, mean along the path."""
     clipped: bool
-    """True if the pressure passes the gauge's range."""
+    """True if the signal goes beyond the gauge's range."""
     notes: tuple[str, ...]
     """Notes in words."""
 
@@ -121,17 +121,17 @@ class ScanRecord:
     speed_mm_per_s: float
     """Speed of the sensor."""
     path_mm: tuple[float, float]
-    """Start and end of the path of the apex."""
+    """Start and end of the apex along the path."""
     sampling_Hz: float
     """Samples a second of the simulated gauge."""
     kept_Hz: float
     """Samples a second in the files of the signals."""
     noise_kPa: float
-    """Standard deviation of one reading."""
+    """Standard deviation of a simulated sample."""
     seed: int
     """Seed of the random numbers."""
     range_kPa: float
-    """Full range of the gauge."""
+    """Greatest gauge pressure that is read."""
     patterns: tuple[BarsRecord, ...]
     """Patterns, in order."""
     states: tuple[SimulatedSignal | SignalRecord, ...]
@@ -144,7 +144,7 @@ class ScanRecord:
 
 @dataclass(frozen=True, slots=True)
 class TellablePattern:
-    """A pattern to be distinguished."""
+    """A pattern of bars that is to be distinguished from another one."""
 
     pitch_mm: float
     """Pitch of the bars."""
@@ -153,37 +153,37 @@ class TellablePattern:
     frequency_Hz: float
     """Speed of the scan over the pitch."""
     noise_amplitude_kPa: float
-    """Reading of noise alone at this frequency."""
+    """Amplitude that noise alone shows at this frequency."""
 
 
 @dataclass(frozen=True, slots=True)
 class FavouringState:
-    """A driving pressure that favours one of the patterns."""
+    """A driving pressure at which one of the two patterns reads stronger than at the other pressure."""
 
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     for_pattern: int
-    """Number of the pattern, from 1."""
+    """Number of the favoured pattern, from 1."""
     amplitudes_kPa: tuple[float, ...]
-    """Amplitude of each pattern."""
+    """Amplitude of each pattern at this pressure."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeparatingDome:
-    """A dome that distinguishes the patterns by two driving pressures."""
+    """A dome that distinguishes the two patterns by two driving pressures."""
 
     rank: int
     """Place in the order, from 1."""
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     inner_radius_mm: float
     """Inner radius R0 of the unloaded dome."""
     wall_thickness_mm: float
     """Wall thickness t0 of the unloaded dome."""
     contrast: float
-    """Ratio of the amplitudes in the first state over that in the second."""
+    """Ratio of the two amplitudes in the first state over the same ratio in the second."""
     states: tuple[FavouringState, ...]
-    """One entry a pattern."""
+    """Its driving pressures, one entry a pattern."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,9 +191,9 @@ class SeparationRecord:
     """Domes that separate two patterns, best first."""
 
     patterns: tuple[TellablePattern, ...]
-    """Patterns, in order."""
+    """The two patterns, in order."""
     candidates: int
-    """Number of candidates."""
+    """Number of combinations of dome and pressure that were computed."""
     preload_N: float
     """Force before the scan."""
     domes: tuple[SeparatingDome, ...]

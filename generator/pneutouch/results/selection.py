@@ -1,4 +1,4 @@
-"""Designs for a target: ranked, a grade for one, or those of several processes."""
+"""Designs for a target: ranked designs, a graded membrane, or the designs of several processes."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ class SolidCheck:
     sensitivity_kPa_per_N: float | None
     """Slope of the pressure rise over the contact force, first contact to range end."""
     within_expanded_uncertainty: bool
-    """True if the solid's sensitivity lies in the interval."""
+    """True if the solid's sensitivity lies in the interval of the sensitivity stated."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FoundDesign:
-    """A design that was found."""
+    """A design that the search found."""
 
     material: str
-    """Material of the membrane."""
+    """Name of the membrane's resin or mix."""
     mix: Mapping[str, Any] | None
     """Mix of two base resins; null: a resin."""
     inner_radius_mm: float
@@ -42,11 +42,11 @@ class FoundDesign:
     expanded_uncertainty_kPa_per_N: float | None
     """Expanded uncertainty of the sensitivity; null: not known."""
     expanded_uncertainty_relative: float | None
-    """The same over the sensitivity."""
+    """Expanded uncertainty over the sensitivity; null: not known."""
     coverage_factor: float
-    """Coverage factor of the intervals."""
+    """Coverage factor of the expanded uncertainty."""
     place_uncertainty_relative: float | None = None
-    """Uncertainty by object and place of contact."""
+    """Relative standard uncertainty of the sensitivity by an unknown object and place of contact."""
     r_squared: float
     """Coefficient of determination of the straight line."""
     force_range_N: tuple[float, float]
@@ -64,17 +64,17 @@ class FoundDesign:
     above_rated_pressure: bool
     """True if it is driven above its rated pressure."""
     sensitivity_at_0kPa_and_rated_kPa_per_N: tuple[float | None, ...]
-    """Sensitivity without driving pressure and at the rated pressure."""
+    """Sensitivity without driving pressure and at the rated pressure; null: not known."""
     margins: Mapping[str, float | None]
-    """Margins to each requirement, as shares; negative: not met."""
+    """Relative margin to each requirement and limit; negative: not kept; null: not known."""
     binding: str
-    """Limit that is met first."""
+    """Requirement or limit with the least margin, the sensitivity left out."""
     model: str
     """Model that computed it."""
     plate_sensitivity_kPa_per_N: float | None = None
-    """Sensitivity under the atlas's plate."""
+    """Sensitivity by the atlas, under a plate without friction; left out if that is the contact."""
     rounds: int | None = None
-    """Rounds of the search."""
+    """Rounds of the search with the solid; left out without it."""
     solid: SolidCheck | None
     """The solid's figures of the design; null: not asked for."""
     set: tuple[str, ...]
@@ -83,34 +83,34 @@ class FoundDesign:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankedDesign(FoundDesign):
-    """A design."""
+    """A design that meets the target, with its rank."""
 
     rank: int
     """Place in the order, from 1."""
     runner_up: bool
-    """True if a design of this resin stands before it."""
+    """True if another design in this resin ranks higher."""
     passes_check: bool | None
     """True if it passes the print rules; null: not checked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NearestDesign(FoundDesign):
-    """Design nearest to the target."""
+    """The design that comes nearest to the target."""
 
     misses_percent: Mapping[str, float | None]
-    """Distance from each requirement that is missed; null: not known."""
+    """Distance from each requirement or limit that is missed, over its value; null: not known."""
 
 
 @dataclass(frozen=True, slots=True)
 class RejectedChoice:
-    """A design that breaks a rule."""
+    """A design that breaks a print rule, or cannot be drawn or predicted."""
 
     rule: str | None
     """Name of the rule; null: it cannot be drawn or predicted."""
     reason: str
     """Reason, in words."""
     design: FoundDesign
-    """The design."""
+    """The design that is rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,15 +118,15 @@ class DroppedChoice:
     """A requirement without which there would be a design."""
 
     requirement: str
-    """The requirement."""
+    """Name of the requirement."""
     attainable: str
     """Value that could be reached instead, in words."""
     field: str | None
-    """Field of the target to change for it, TABLE.KEY; null for the rated pressure."""
+    """Field of the target to change, TABLE.KEY; null for the rated pressure."""
     value: float | None
-    """Its value; null for the rated pressure."""
+    """Value of that field with which a design meets the target; null for the rated pressure."""
     design: FoundDesign
-    """The best design."""
+    """The best design without the requirement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,35 +136,35 @@ class SingleChange:
     field: str
     """Field of the target, TABLE.KEY."""
     value: Any
-    """Its value; for setting.assignments one TABLE.KEY=VALUE, besides those that are there."""
+    """Value to give it; for setting.assignments one TABLE.KEY=VALUE to be added."""
     design: FoundDesign
     """The best design found with it."""
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeTrial:
-    """A gauge that was tried."""
+    """A gauge that was tried for the target."""
 
     gauge: str
     """Name of the gauge."""
     title: str
-    """Title."""
+    """Name of the gauge in words."""
     chosen: bool
     """True if it was chosen."""
     why: str
-    """Reason."""
+    """Reason for the choice or against it."""
     smallest_force_N: float | None
     """Smallest force that the best design detects with it; null: its noise is not known."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelectionRecord:
-    """Ranked designs."""
+    """Ranked designs for a target."""
 
     target: Mapping[str, Any]
     """The target."""
     base: str
-    """The design that gives everything else."""
+    """Design, as given, that sets everything but what is searched."""
     dead_volume_note: str | None = None
     """Note on a stated dead volume that is an idealisation."""
     contact: Mapping[str, Any] | None = None
@@ -172,7 +172,7 @@ class SelectionRecord:
     met: bool
     """True if the target is met."""
     candidates: int
-    """Number of candidates."""
+    """Number of candidates that were computed."""
     designs: tuple[RankedDesign, ...]
     """Designs, the best first."""
     nearest: NearestDesign | None
@@ -194,15 +194,15 @@ class ProcessRecord(SelectionRecord):
     """Ranked designs of one process."""
 
     profile: str
-    """The printer profile."""
+    """Name of the printer profile."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessesRecord:
-    """The designs of several processes."""
+    """The designs of several processes for one target."""
 
     met: bool
-    """True if the target is met."""
+    """True if a process meets the target."""
     processes: Mapping[str, ProcessRecord]
     """Selections by process."""
     left_out: Mapping[str, str]
@@ -218,9 +218,9 @@ class GradeFigures:
     sensitivity_kPa_per_N: tuple[float | None, ...]
     """Slope of the pressure rise over the contact force, first contact to range end."""
     difference_percent: float | None
-    """Difference of the sensitivities."""
+    """Sensitivity at the last pressure over that at the first, less 100 %; null: not known."""
     force_range_end_N: tuple[float | None, ...]
-    """Contact force at the end of the range."""
+    """Contact force at the end of the range; null: not known."""
     range_ends_with: tuple[str, ...]
     """Event that ends the range, or the depth."""
     rated_pressure_kPa: float | None
@@ -230,15 +230,15 @@ class GradeFigures:
     meets: bool
     """True if it meets the target."""
     reason: str | None
-    """Reason, in words; null: nothing to state."""
+    """Reason why there are no figures, in words; null: there are."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FoundGrade(GradeFigures):
-    """The grade."""
+    """The graded membrane that was found."""
 
     material: Mapping[str, Any]
-    """Material of the membrane."""
+    """Mix of the membrane, as a design file states it."""
     inner_radius_mm: float
     """Inner radius R0 of the unloaded dome."""
     wall_thickness_mm: float
@@ -246,7 +246,7 @@ class FoundGrade(GradeFigures):
     dead_volume_mL: float
     """Gas volume behind the cavity."""
     share_used: Mapping[str, float]
-    """Share of each tolerance or limit that is used; at most 1 where it is kept."""
+    """Share of each tolerance or limit that it uses; at most 1 where it is kept."""
     passes_check: bool | None
     """True if it passes the print rules; null: not checked."""
     set: tuple[str, ...]
@@ -255,32 +255,32 @@ class FoundGrade(GradeFigures):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConstantMembrane(GradeFigures):
-    """A constant mix."""
+    """A membrane of the same mix, or resin, everywhere."""
 
     name: str
-    """Name."""
+    """Name of the mix or resin."""
     fraction: float | None
-    """Volume fraction of the stiff resin."""
+    """Volume fraction of the stiff resin; null: a resin of the catalogue."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchCost:
-    """Work done."""
+    """Work that the search took."""
 
     solid_solves: int
-    """Presses that the solid solved."""
+    """Presses that were computed with the solid."""
     grades_tried: int
     """Grades that were tried."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GradedRecord:
-    """A graded membrane."""
+    """A graded membrane for a target."""
 
     target: Mapping[str, Any]
     """The target."""
     base: str
-    """The design that gives everything else."""
+    """Design, as given, that sets everything but what is searched."""
     contact: Mapping[str, Any] | None = None
     """Object that presses the sensor; left out for a frictionless plate."""
     met: bool
@@ -288,13 +288,13 @@ class GradedRecord:
     design: FoundGrade
     """The best grade."""
     rejected: str | None
-    """Reason for which the print rules refuse it; null: they do not."""
+    """Reason for which the print rules reject the grade; null: they do not."""
     constant: tuple[ConstantMembrane, ...]
     """Constant mixes, for comparison."""
     nearest_constant_mix: str
-    """The constant mix that comes nearest."""
+    """Name of the constant mix that comes nearest to the target."""
     cost: SearchCost
-    """Work done."""
+    """Work that the search took."""
     model: str
     """Model that computed it."""
     left_out: Mapping[str, str]

@@ -11,7 +11,7 @@ class ParameterValue:
     """A parameter of the simulation."""
 
     value: float | tuple[float, ...] | None
-    """Value; null: infinite."""
+    """Value of the parameter; null: infinite."""
     unit: str
     """Unit of the value."""
     reason: str
@@ -20,18 +20,18 @@ class ParameterValue:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedSpecimen:
-    """A simulated specimen."""
+    """A simulated specimen and its true values."""
 
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     age_days: float
     """Age of the print."""
     shear_modulus_MPa: float
     """Shear modulus of the wall."""
     pressures: Mapping[str, Mapping[str, float | str | None]]
-    """Figures without noise, by driving pressure in kPa."""
+    """Figures without noise, and end of the range, by driving pressure in kPa."""
     wall_thickness_mm: float
-    """Wall thickness t0 of the unloaded dome."""
+    """True wall thickness of the unloaded dome."""
     dead_volume_mL: float
     """Gas volume behind the cavity."""
     model: str
@@ -40,22 +40,22 @@ class SimulatedSpecimen:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedPopulation:
-    """Sensors of one resin, age and driving pressure."""
+    """All possible sensors of one resin and age at one driving pressure."""
 
     resin: str
-    """Name of its material."""
+    """Name of the membrane's resin."""
     age_days: float
     """Age of the print."""
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     figures: Mapping[str, float | None]
-    """Mean figures over specimens."""
+    """Mean figures over the specimens that were drawn; null: not known."""
     spread: Mapping[str, float]
-    """Standard deviation of each figure over specimens."""
+    """Standard deviation of each figure over these specimens."""
     count: int
-    """Number of specimens."""
+    """Number of these specimens."""
     basis: str
-    """Basis of the figures."""
+    """Derivation of the figures, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,22 +63,22 @@ class CampaignTruth:
     """True values of the simulated specimens, without noise."""
 
     simulated: bool
-    """True if a program made the files."""
+    """True: a program made the files."""
     design: str
     """Name of the design."""
     model: str
-    """Model that computed it."""
+    """Model that presses the specimens, as it was asked for."""
     seed: int
-    """Seed of the noise."""
+    """Seed of scatter and noise."""
     rate_Hz: float
     """Samples a second."""
     rest_s: float | None
     """Longest rest before each press; null: the protocol's."""
     parameters: Mapping[str, Mapping[str, Mapping[str, ParameterValue]]]
-    """Parameters of the simulation by resin, part and name."""
+    """Parameters of the simulation by resin, part of the simulation, and name."""
     specimens: Mapping[str, SimulatedSpecimen]
-    """Specimens by name."""
+    """True values of the specimens by name."""
     populations: tuple[SimulatedPopulation, ...]
-    """Figures of all sensors of one resin, age and driving pressure."""
+    """Figures of all possible sensors of one resin and age at one driving pressure."""
     notes: tuple[str, ...]
     """Notes in words."""

@@ -1,4 +1,4 @@
-"""A built texture specimen."""
+"""Record of a built texture specimen."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ class BlockRecord:
     """The block, in its own frame: x along the path of the scan."""
 
     length_mm: float
-    """Length."""
+    """Length along the path of the scan."""
     width_mm: float
-    """Width."""
+    """Width across the path."""
     height_mm: float
-    """Height."""
+    """Height from the bottom to the scanned surface."""
     volume_mm3: float
     """Volume of the block without patterns."""
 
@@ -38,9 +38,9 @@ class PatternLayer:
     """A layer of bars or of another pattern."""
 
     name: str
-    """Name."""
+    """Name of the layer."""
     kind: str
-    """Family of the pattern."""
+    """Kind of the pattern, as the specimen file states it."""
     pitches_mm: tuple[float, ...]
     """Pitches of the pattern along the path."""
     frequencies_Hz: tuple[float, ...]
@@ -50,27 +50,27 @@ class PatternLayer:
     bottom_depth_mm: float
     """Depth of the lower faces below the scanned surface."""
     start_mm: float
-    """Start along the path."""
+    """Start of the pattern along the path."""
     end_mm: float
-    """End along the path."""
+    """End of the pattern along the path."""
     width_mm_range: tuple[float, float]
-    """Start and end across the path."""
+    """Start and end of the pattern across the path."""
     volume_mm3: float
     """Volume of the mesh."""
     exact_volume_mm3: float | None
     """Volume of the exact solid; null: the pattern has none."""
     pattern: Mapping[str, Any]
-    """Numbers of the family, by name."""
+    """Further properties of the pattern, such as the number of bars, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpecimenRecord:
-    """Content of a texture specimen, with places: depths are below the scanned surface."""
+    """A texture specimen: its block and its layers, in the block's frame, with depths below the scanned surface."""
 
     name: str
-    """Name."""
+    """Name of the specimen."""
     title: str
-    """Title."""
+    """Title of the specimen file."""
     block: BlockRecord
     """Size of the block."""
     materials: Mapping[str, str]
@@ -78,7 +78,7 @@ class SpecimenRecord:
     volumes_mm3: Mapping[str, float]
     """Volume of each body."""
     inclusion_fraction: float
-    """Volume of the inclusion over that of the block."""
+    """Volume of all patterns over that of the block."""
     block_to_print_frame_mm: tuple[float, float, float]
     """Offset from the block's frame to that of the print files."""
     scan: ScanPathRecord

@@ -1,4 +1,4 @@
-"""A stack of voxel slices."""
+"""Record of a stack of voxel slices."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ResinVoxels:
-    """A base resin."""
+    """A base resin in the slices."""
 
     rgba: tuple[int, ...]
     """Colour of the resin in the slices."""
@@ -20,12 +20,12 @@ class ResinVoxels:
 
 @dataclass(frozen=True, slots=True)
 class BodyVoxels:
-    """A body; the keys that follow its volumes are of a mixed body alone."""
+    """A body in the slices; the keys after its volumes are written for a mixed body only."""
 
     material: str
     """Label of the material."""
     resins: tuple[str, ...]
-    """Base resins that it is mixed of."""
+    """Base resins of the material."""
     voxels: int
     """Number of voxels."""
     volume_mm3: float
@@ -33,35 +33,35 @@ class BodyVoxels:
     exact_volume_mm3: float
     """Volume of the exact solid."""
     made_up_within_mm: float | None = None
-    """Distance from the skin within which its missing stiff resin is added."""
+    """Distance from the skin within which the stiff resin that the skin lacks is added."""
     stiff_resin: str | None = None
     """The stiff resin of the mix."""
     skin_voxels: int | None = None
-    """Voxels at the surface, which stay the soft resin."""
+    """Voxels at the surface, which are all of the soft resin."""
     fraction_requested: float | None = None
     """Volume fraction of the stiff resin that the design states."""
     fraction_given: float | None = None
-    """Volume fraction of the stiff resin that the dither was given, where the skin stays soft."""
+    """Volume fraction of the stiff resin that was dithered, so that the skin stays soft."""
     fraction_realised: float | None = None
-    """Volume fraction of the stiff resin in the voxels."""
+    """Volume fraction of the stiff resin counted in the voxels."""
     worst_cube: float | None = None
-    """Greatest deviation of the realised fraction from the given one in a cube."""
+    """Greatest deviation of the counted fraction from the dithered one in a cube."""
     cubes: int | None = None
     """Number of cubes that are compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class DitherRecord:
-    """Spread of fractions over voxels."""
+    """Method by which volume fractions are distributed over voxels."""
 
     method: str
-    """Method."""
+    """Name of the method."""
     seed: int
     """Seed of the random numbers."""
     cube_mm: float
-    """Edge of the cubes in which the fraction is compared with the request."""
+    """Edge of the cubes in which the counted fraction is compared with the dithered one."""
     least_share_of_a_cube: float
-    """Share of a cube that must lie in the body for it to be compared."""
+    """Least share of a cube that must lie in the body for the comparison."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +69,9 @@ class StackRecord:
     """A stack of voxel slices."""
 
     name: str
-    """Name."""
+    """Name of the stack."""
     input_hash: str
-    """Digest of the inputs and the version."""
+    """Short digest of the inputs and of the program's version."""
     printer: str
     """Printer."""
     mode: str
@@ -81,7 +81,7 @@ class StackRecord:
     versions: Mapping[str, str]
     """Versions of the program and of the libraries that the bytes depend on."""
     print_frame_offset_mm: tuple[float, ...]
-    """From the design frame to the print frame."""
+    """Shift from the design frame to the print frame."""
     prefix: str
     """Beginning of the slices' file names."""
     dpi: tuple[float, float]
@@ -95,9 +95,9 @@ class StackRecord:
     layers: int
     """Number of slices."""
     size_mm: tuple[float, ...]
-    """Size of the stack."""
+    """Lengths of the stack along x, y and z."""
     first_voxel_mm: tuple[float, ...]
-    """Centre of the first voxel."""
+    """Centre of the first voxel in the print frame."""
     background_rgba: tuple[int, ...]
     """Colour where no resin is printed."""
     resins: Mapping[str, ResinVoxels]
@@ -105,10 +105,10 @@ class StackRecord:
     bodies: Mapping[str, BodyVoxels]
     """Bodies by name."""
     dither: DitherRecord
-    """Spread of fractions over voxels."""
+    """Method by which volume fractions are distributed over voxels."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""
     sha256: str
-    """SHA-256 of the content, hexadecimal."""
+    """SHA-256 of the digests of all slices, in order."""
     slices: tuple[str, ...]
-    """Digest of each slice, from the first on."""
+    """SHA-256 of each slice, in order."""

@@ -18,7 +18,7 @@ class ShownBody:
     colour: str | None
     """Colour; null: it has none."""
     mix: Mapping[str, float]
-    """Shares of the resins that it is mixed from; empty: it is not mixed."""
+    """Volume fractions of the resins that it is mixed from; empty: it is not mixed."""
     size_mm: tuple[float, ...]
     """Lengths along x, y and z."""
     volume_mm3: float
@@ -31,7 +31,7 @@ class ShownBody:
 
 @dataclass(frozen=True, slots=True)
 class ShownRecipe:
-    """Recipe of a build, that is all its inputs, as a built file holds it: with format, versions and input hash."""
+    """Recipe of a build, that is all its inputs, as stored in the built file with format, versions and input hash."""
 
     format: str
     """Format of the recipe."""
@@ -42,11 +42,11 @@ class ShownRecipe:
     inputs: Mapping[str, Any]
     """Everything that the build follows from, as data."""
     input_hash: str
-    """Digest of the inputs and the version."""
+    """Short digest of the inputs and of the program's version."""
     versions: Mapping[str, Any]
     """Versions of the program and of the libraries that the bytes depend on."""
     other_versions: tuple[str, ...]
-    """Programs that are of another version here, in words."""
+    """Program and libraries whose version here differs from the stored one, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +56,13 @@ class ShownPackage:
     file: str
     """Path of the file."""
     bodies: tuple[ShownBody, ...]
-    """Bodies."""
+    """Bodies of the file."""
     thumbnail: bool
-    """True if it has a picture."""
+    """True if the file has a picture."""
     warnings: tuple[str, ...]
-    """Doubtful parts."""
+    """Doubtful parts of the file, in words."""
     metadata: Mapping[str, str]
-    """Metadata by name."""
+    """Metadata of the file by name, without the recipe."""
     recipe: ShownRecipe | None
     """Recipe that it was built from; null: it has none."""
 
@@ -78,16 +78,16 @@ class PrintedResin:
     volume_mm3: float
     """Volume of its voxels."""
     share_of_the_print: float
-    """Share of the voxels that are of a resin."""
+    """Voxels of this resin over those of all resins."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShownStack:
-    """Content of a voxel stack: its resins as counted, and what its manifest states of the rest."""
+    """Content of a voxel stack: the resins as counted, and entries of its manifest."""
 
     stack: str
     """Folder of the stack."""
     resins: Mapping[str, PrintedResin]
     """Resins by name."""
     held: Mapping[str, Any]
-    """Entries of the manifest, as they stand in the file."""
+    """Further entries of the stack's manifest, unchanged."""

@@ -1,4 +1,4 @@
-"""A tray of sensors as it was laid out."""
+"""Record of a tray of sensors, as it was laid out."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class LabelRow:
-    """A body on a tray: a row of the label list. x and y are the middle of its part."""
+    """A body on a tray, a row of the label list; x and y are the middle of the part that it belongs to."""
 
     label: str
     """Label of the part."""
     body: str
     """Name of the body."""
     file: str
-    """Path of the file."""
+    """Path of the body's mesh file."""
     design: str
     """Name of the design."""
     varied: str
-    """Key that is varied; empty: none."""
+    """Key of the design that is varied, TABLE.KEY; empty: none."""
     value: str | float | list[float | int]
     """Value of that key; empty: none."""
     copy: int
@@ -35,21 +35,21 @@ class LabelRow:
     layers: int
     """Number of layers."""
     x_mm: float
-    """Place along x."""
+    """Middle of the part along x."""
     y_mm: float
-    """Place along y."""
+    """Middle of the part along y."""
     turned_deg: int
-    """Turn about z."""
+    """Angle by which the part is turned about z."""
     size_x_mm: float
     """Size along x before the turn."""
     size_y_mm: float
     """Size along y before the turn."""
     height_mm: float
-    """Height."""
+    """Height of the body."""
     mass_g: float
-    """Mass."""
+    """Mass of the body."""
     mark: str
-    """Kind of the mark."""
+    """Kind of the mark: text, tally or none; raised, if it is."""
     mark_face: str
     """Face that carries the mark."""
     mark_depth_mm: float
@@ -57,12 +57,12 @@ class LabelRow:
     mark_stroke_mm: float
     """Width of the mark's strokes."""
     mark_note: str
-    """A note on the mark in words."""
+    """A note on the mark in words; empty: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrayJobRecord:
-    """A run of the printer."""
+    """A print job: the parts of a tray that are printed together."""
 
     name: str
     """Name of the job's files."""
@@ -73,15 +73,15 @@ class TrayJobRecord:
     layers: int
     """Number of layers."""
     height_mm: float
-    """Height."""
+    """Height of the job."""
     resins: tuple[str, ...]
     """Resins that are loaded."""
     parts: int
     """Number of parts."""
     mesh_tolerance_mm: float
-    """Tolerance that the meshes keep."""
+    """Greatest distance from the exact surface that the meshes may have."""
     fill: Mapping[str, float]
-    """Shares of the envelope's footprint: of the parts' bounding boxes, and of their outlines."""
+    """Shares of the envelope's area that bounding boxes and outlines of the parts cover."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,14 +93,14 @@ class TrayRecord:
     folder: str
     """Folder that it was written to."""
     printer: str
-    """Printer."""
+    """Title of the printer."""
     parts: int
     """Number of parts."""
     resin_changes: str
-    """Changes of the resin, in words."""
+    """Changes of resin between the jobs, in words."""
     left_out: tuple[str, ...]
     """Parts left out, and the reasons."""
     jobs: tuple[TrayJobRecord, ...]
-    """Print jobs of a tray."""
+    """Print jobs of the tray."""
     labels: tuple[LabelRow, ...]
     """Bodies in the order of the labels."""

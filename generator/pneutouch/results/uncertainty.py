@@ -8,29 +8,29 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SourceRecord:
-    """A source for one sensor: its standard uncertainty in ``unit``, and the figures that it counts for."""
+    """A source of uncertainty of one sensor: its standard uncertainty, and the figures that it counts for."""
 
     name: str
     """Name of the source."""
     acts_on: str
     """Input or figure that the source acts on."""
     standard_uncertainty: float
-    """Standard uncertainty."""
+    """Standard uncertainty of the input or figure that the source acts on."""
     unit: str
     """Unit of the standard uncertainty."""
     distribution: str
-    """Distribution."""
+    """Distribution of the deviation."""
     figures: tuple[str, ...]
     """Figures that the source counts for."""
     known: bool
-    """True if the value is known, false if it is assumed."""
+    """True if the uncertainty is known, false if it is assumed."""
     origin: str
-    """Origin of the value."""
+    """Origin of the uncertainty, in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class IntervalRecord:
-    """The ends of an expanded interval."""
+    """The ends of an interval of a figure."""
 
     low: float
     """Lower end."""
@@ -40,10 +40,10 @@ class IntervalRecord:
 
 @dataclass(frozen=True, slots=True)
 class SampledInterval(IntervalRecord):
-    """The ends of a sampled interval."""
+    """The ends of an interval of a figure that was found by sampling the sources."""
 
     lost: float
-    """Share of the samples without the figure."""
+    """Share of the samples in which the sensor does not have the figure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +63,11 @@ class FigureRecord:
     degrees_of_freedom: float | None
     """Effective degrees of freedom; null: infinite."""
     nonlinear: bool
-    """True if the figure is not linear within the uncertainties."""
+    """True if the figure is not linear in its inputs over their uncertainties."""
     shares: Mapping[str, float]
-    """Shares of the variance by source."""
+    """Share of each source in the variance of the figure."""
     at_calibration: IntervalRecord | None = None
-    """The interval on the day of the calibration."""
+    """The interval on the day of the calibration; left out without a calibration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,31 +77,31 @@ class SampleRecord:
     samples: int
     """Number of samples."""
     figures: Mapping[str, SampledInterval]
-    """Intervals by figure."""
+    """Sampled intervals by figure."""
 
 
 @dataclass(frozen=True, slots=True)
 class UncertaintyRecord:
-    """The uncertainty of a state; or ``unknown`` alone, the reason why there is none."""
+    """The uncertainty of the figures of a state; or ``unknown`` alone, the reason why there is none."""
 
     unknown: str | None = None
-    """Reason why the uncertainty is not known."""
+    """Reason why the uncertainty is not known; then every other key is left out."""
     coverage_factor: float | None = None
     """Coverage factor of the intervals."""
     figures: Mapping[str, FigureRecord] | None = None
     """Figures by name."""
     sources: tuple[SourceRecord, ...] | None = None
-    """Sources that count for this sensor."""
+    """Sources of uncertainty that count for this sensor."""
     elasticities: Mapping[str, Mapping[str, float]] | None = None
-    """Relative change of a figure by that of an input, by figure and input."""
+    """Relative change of a figure over that of an input, by figure and input."""
     notes: tuple[str, ...] | None = None
-    """Notes."""
+    """Notes in words."""
     summary: str | None = None
     """The uncertainty of the sensitivity in a sentence or two."""
     monte_carlo: SampleRecord | None = None
-    """Intervals by sampling."""
+    """Intervals by sampling the sources; left out: not sampled."""
 
     @property
     def known(self) -> Mapping[str, FigureRecord]:
-        """Figures by name; none where the uncertainty is unknown."""
+        """Figures with their uncertainty by name; empty where it is unknown."""
         return self.figures or {}

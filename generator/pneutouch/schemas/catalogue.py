@@ -1,4 +1,4 @@
-"""All schemas by name, those of the TOML files that the program reads among them: made from their declarations."""
+"""All schemas by name, and those of the TOML files that the program reads, made from the declarations of their keys."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _VALUE = any_of(_SCALAR, items({"anyOf": [_SCALAR, {"type": "array"}]}))
 
 
 def _fields(value: dict[str, Any], help: str) -> Schema:
-    """A table of fields of the design: keys in quotes as ``"table.key"``, or tables of keys."""
+    """Schema of a table of a design's fields, of schema ``value``: keys as ``"table.key"``, or tables of keys."""
     return {
         "type": "object",
         "additionalProperties": {"anyOf": [value, {"type": "object", "additionalProperties": value}]},
@@ -40,7 +40,7 @@ def _fields(value: dict[str, Any], help: str) -> Schema:
 
 
 def sweep_schema() -> Schema:
-    """The schema of a sweep file, see `workflows.sweep.read`."""
+    """The schema of a sweep file, which `workflows.sweep.read` reads."""
     steps = record(
         "A range of equal steps.",
         {
@@ -89,7 +89,7 @@ _MODELS = {
     "seat": ("part.AnySeat", "A seat of the membrane", "`parts/seats/`"),
     "mount": ("part.AnyMount", "A mounting pattern", "`parts/mounts/`"),
 }
-"""The model of each file in `spec`, its title, and where such files lie."""
+"""Model in `spec`, title and place of every file with a single model, by the name of its schema."""
 
 
 def _of_model(path: str) -> Schema:
@@ -98,7 +98,7 @@ def _of_model(path: str) -> Schema:
 
 
 def _specimen() -> Schema:
-    """A specimen's file, whose layers are of several kinds."""
+    """The schema of a specimen file, each of whose layers is of one of several kinds."""
     from pneutouch.spec.specimen import LAYERS, Specimen
 
     kinds: Any = reduce(or_, dict.fromkeys(LAYERS.values()))
@@ -109,7 +109,7 @@ def _specimen() -> Schema:
 
 
 def _file_kinds() -> dict[str, DocumentKind]:
-    """Every file that is read, by name."""
+    """Every kind of file that the program reads, by name."""
     declared = {
         name: DocumentKind("TOML", title, where, partial(_of_model, path))
         for name, (path, title, where) in _MODELS.items()
@@ -122,7 +122,7 @@ def _file_kinds() -> dict[str, DocumentKind]:
 
 
 def described(schema: Any) -> Any:
-    """A schema whose descriptions state unit, bounds and default too, for readers that show nothing else."""
+    """A copy of a schema whose descriptions also state unit, bounds and default, for readers that show only these."""
     if isinstance(schema, list):
         return [described(one) for one in schema]
     if not isinstance(schema, dict):
@@ -137,7 +137,7 @@ def described(schema: Any) -> Any:
 
 
 def bounds(schema: Schema) -> str:
-    """The bounds of a number, of the numbers of a list, or of a sourced number: ``from 1 to 100``; "" without any."""
+    """Bounds of a number, of a list's numbers, or of a sourced number: ``from 1 to 100``; "" without any."""
     while schema.get("type") == "array" and isinstance(schema.get("items"), dict) and "minimum" not in schema:
         schema = schema["items"]
     low, high = schema.get("minimum", schema.get("x-minimum")), schema.get("maximum", schema.get("x-maximum"))
@@ -150,7 +150,7 @@ def bounds(schema: Schema) -> str:
 
 
 def default_text(value: Any) -> str:
-    """A default as TOML writes it."""
+    """A default value as TOML writes it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):
@@ -184,9 +184,9 @@ def document_kinds() -> dict[str, DocumentKind]:
 
 
 def schema_of(name: str) -> Schema:
-    """The schema of a kind of document, as data: descriptions state unit, bounds and default too.
+    """The schema of a kind of document, as data; its descriptions also state unit, bounds and default.
 
-    Raises InputError for a name that is none.
+    Raises InputError for a name of no kind.
     """
     kinds = document_kinds()
     if name not in kinds:

@@ -1,4 +1,4 @@
-"""Schemas of the documents that the program writes: each from its record, with tables that are declared elsewhere."""
+"""Schemas of the documents that the program writes, each made from its record in `results`, or by a function."""
 
 import ast
 import dataclasses
@@ -53,9 +53,9 @@ _PLAIN: dict[Any, str] = {str: "string", float: "number", int: "integer", bool: 
 
 
 def _of_record(kind: type, instead: Mapping[str, Schema] | None = None) -> Schema:
-    """The schema of a record; what its fields say of themselves describes its keys.
+    """The schema of a record, with the texts below its fields as descriptions of the keys.
 
-    ``instead`` are schemas of keys whose values are no records, by ``Record.key``.
+    ``instead`` holds schemas, by ``Record.key``, for keys whose schema does not follow from the type of the field.
     """
     given = instead or {}
     hints = typing.get_type_hints(kind, vars(sys.modules[kind.__module__]))
@@ -74,7 +74,7 @@ def _of_record(kind: type, instead: Mapping[str, Schema] | None = None) -> Schem
 
 
 def _helps(kind: type) -> dict[str, str]:
-    """The texts below the fields of a class, by field."""
+    """The texts below the fields of a dataclass, by field; empty for another class."""
     if not dataclasses.is_dataclass(kind):
         return {}
     (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
@@ -109,13 +109,13 @@ def _of_hint(hint: Any, given: Mapping[str, Schema]) -> Schema:
 
 
 def _made(name: str, source: type | Callable[[], Schema]) -> Schema:
-    """The schema of a document, from its record or by the function that makes it."""
+    """The schema of the document ``name``, from its record or by the function that makes it."""
     schema = _of_record(source) if isinstance(source, type) else source()
     return _with_format(name, schema) if name in FORMATS else schema
 
 
 def _with_format(name: str, schema: Schema) -> Schema:
-    """The schema with the key that states the format in a file; in each form if there are several."""
+    """The schema with the key that states the format in a file, in each of its forms if there are several."""
     if "anyOf" in schema:
         return {**schema, "anyOf": [_with_format(name, one) for one in schema["anyOf"]]}
     if KEY in schema["properties"]:
@@ -125,7 +125,7 @@ def _with_format(name: str, schema: Schema) -> Schema:
 
 
 def written_kinds() -> dict[str, DocumentKind]:
-    """Every document that is written, by name."""
+    """Every kind of document that the program writes, by name."""
     return {
         name: DocumentKind("JSON", title, where, partial(_made, name, source))
         for name, (source, title, where) in _DOCUMENTS.items()
@@ -140,7 +140,7 @@ _OF_SEARCH: dict[str, Schema] = {
 
 
 def contact(notes: bool = False) -> Schema:
-    """Schema of the pressing object, given if that is no frictionless plate."""
+    """Schema of the object that presses, written if it is no frictionless plate; ``notes``: with notes on a search."""
     sizes = {key: NUMBER for keys in SIZES.values() for key in keys}
     corners = {"type": "array", "items": NUMBERS}
     more: dict[str, Schema] = _OF_SEARCH if notes else {}
@@ -161,7 +161,7 @@ def contact(notes: bool = False) -> Schema:
 
 
 def _help(key: str) -> Schema:
-    """The help of the design file's key."""
+    """The help of a key of the design file's table [contact], as a description; empty for another key."""
     field = ContactTable.model_fields.get(key)
     return {} if field is None else {"description": field.description}
 
@@ -178,7 +178,7 @@ def plan() -> Schema:
 
 
 def exported_design() -> Schema:
-    """Schema of the file that **Export** on the page saves and **Open** reads."""
+    """Schema of the file that **Export** in the studio saves and **Open** reads."""
     value: Schema = {"type": ["string", "null"]}
     keys = {
         "version": described_by("Version of the program.", TEXT),
@@ -189,7 +189,7 @@ def exported_design() -> Schema:
 
 
 def prediction() -> Schema:
-    """Schema of the output of ``pneutouch predict --json``, part of which ``prediction.json`` holds."""
+    """Schema of the output of ``pneutouch predict --json``; ``prediction.json`` holds a part of it."""
     source = model_schema(CalibratedBy)["properties"]
     keys = {key: {k: v for k, v in field.items() if k != "default"} for key, field in source.items()}
     unknown = [key for key, field in CalibratedBy.model_fields.items() if field.default is None]
@@ -200,7 +200,7 @@ def prediction() -> Schema:
 
 
 def reader() -> Schema:
-    """Schema of ``reader.json``."""
+    """Schema of ``reader.json``, read from the file that is shipped with the reader."""
     schema: Schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     return schema
 
@@ -215,13 +215,13 @@ def selection() -> Schema:
 
 
 def _saved(schema: Schema) -> Schema:
-    """The schema with the file that the command wrote."""
+    """The schema with a key for the design file that the command wrote."""
     written = described_by("The design file that was written; null: none.", or_null(TEXT))
     return {**schema, "properties": {**schema["properties"], "written": written}}
 
 
 def _target() -> Schema:
-    """The target with every key, null where it requires nothing."""
+    """Schema of a target with every key, null where it requires nothing."""
     tables = model_schema(Target)["$defs"]
     helps = {key: tables[field.annotation.__name__]["description"] for key, field in Target.model_fields.items()}  # type: ignore[union-attr]
     keys = {

@@ -1,7 +1,7 @@
-"""Pieces of schemas, and the schema of a declared file: fields with unit, bounds, default and help.
+"""Pieces of schemas, and the schema of a file from its pydantic model: keys with unit, bounds, default and help.
 
-Keywords of our own: `x-unit`, `x-registry` (what `pneutouch list` shows the names of), and `x-minimum` and `x-maximum`
-of a sourced number.
+Keywords of our own: `x-unit`; `x-registry`, the kind in `pneutouch list` that a name belongs to; `x-minimum` and
+`x-maximum`, the bounds of a sourced number.
 """
 
 import math
@@ -51,7 +51,7 @@ _SUFFIX = re.compile(rf"_({'|'.join(_UNITS)})(?:_\d+)?$")
 
 
 def unit_of(key: str) -> str:
-    """The unit that the name of a key ends with; "" without one."""
+    """Unit at the end of a key's name, ``kPa/N`` for ``..._kPa_per_N``; "" without one."""
     match = _SUFFIX.search(key)
     return _UNITS[match[1]] if match else ""
 
@@ -63,7 +63,7 @@ FLAG: Schema = {"type": "boolean"}
 
 
 def or_null(schema: Schema) -> Schema:
-    """The schema, or null."""
+    """A schema that also allows null."""
     if isinstance(schema.get("type"), str):
         return {**schema, "type": [schema["type"], "null"]}
     description = {"description": schema["description"]} if "description" in schema else {}
@@ -75,12 +75,12 @@ def or_null(schema: Schema) -> Schema:
 
 
 def any_of(*schemas: Schema) -> Schema:
-    """One of several schemas."""
+    """Schema of a value that fits at least one of several schemas."""
     return {"anyOf": list(schemas)}
 
 
 def items(schema: Schema) -> Schema:
-    """A list without a description of its own."""
+    """Schema of a list whose entries fit ``schema``; without a description."""
     return {"type": "array", "items": schema}
 
 
@@ -90,22 +90,22 @@ PAIR: Schema = {**NUMBERS, "minItems": 2, "maxItems": 2}
 
 
 def mapping(schema: Schema) -> Schema:
-    """A table with names of any kind as keys."""
+    """Schema of a table with any names as keys, whose values fit ``schema``."""
     return {"type": "object", "additionalProperties": schema}
 
 
 def described_by(help: str, schema: Schema) -> Schema:
-    """The schema with a description."""
+    """The schema with ``help`` as its description."""
     return {**schema, "description": help}
 
 
 def choice(*words: str) -> Schema:
-    """One of a few words."""
+    """Schema of a value that is one of ``words``."""
     return {"enum": list(words)}
 
 
 def record(help: str, keys: Mapping[str, Schema], optional: Iterable[str] = ()) -> Schema:
-    """A table with these keys and no other; a key without a description gets the common one, and a number its unit."""
+    """Schema of a table with these keys, each with a description, and no other; numbers get the unit of their key."""
     may_be_left_out = set(optional)
     assert may_be_left_out <= set(keys), may_be_left_out - set(keys)
     return {
@@ -124,7 +124,7 @@ def _with_unit(key: str, schema: Schema) -> Schema:
 
 
 class DocumentKind(NamedTuple):
-    """A kind of document that is read or written; ``where`` states where it lies or what takes it."""
+    """A kind of document, read or written; ``where``: where it lies or which command takes it; ``make``: its schema."""
 
     form: Literal["TOML", "JSON"]
     title: str
@@ -136,7 +136,7 @@ NULL = {"type": "null"}
 
 
 class _Untitled(GenerateJsonSchema):
-    """Without the titles that pydantic makes of the names of keys."""
+    """Generator of schemas without the titles that pydantic makes from the names of keys."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         """No field has a title next to its key."""
@@ -144,9 +144,9 @@ class _Untitled(GenerateJsonSchema):
 
 
 def model_schema(model: Any) -> Schema:
-    """The schema of a file's content by its model, or by a union of models for one that has several forms.
+    """The schema of a file from its model, or from a union of models if it has several forms.
 
-    TOML has no null: a key that may be left out is not required, and takes no null.
+    TOML has no null: a key that may be left out is not required, and may not be null.
     """
     if isinstance(model, type) and issubclass(model, BaseModel):
         made = model.model_json_schema(by_alias=True, schema_generator=_Untitled)
@@ -157,7 +157,7 @@ def model_schema(model: Any) -> Schema:
 
 
 def _tidied(schema: Any) -> Any:
-    """A schema without entries that pydantic alone reads; fields with unit, bounds and default in their description."""
+    """Copy of a schema without nulls and what pydantic alone reads; units, bounds and registries become keywords."""
     if isinstance(schema, list):
         return [_tidied(one) for one in schema]
     if not isinstance(schema, dict):
@@ -167,7 +167,7 @@ def _tidied(schema: Any) -> Any:
 
 
 def _entries(key: str, value: Any, change: Callable[[Any], Any]) -> Any:
-    """A keyword's value changed: entry by entry where the keyword maps names to schemas."""
+    """Value of a keyword, changed by ``change``: name by name if it maps names to schemas; plain values stay."""
     if key in ("properties", "$defs") and isinstance(value, Mapping):
         return {name: change(one) for name, one in value.items()}
     return value if key in ("default", "enum", "const", "required") else change(value)
@@ -181,7 +181,7 @@ def _table(schema: Schema) -> Schema:
 
 
 def _without_null(schema: Schema) -> Schema:
-    """The one alternative to null in place of both; without a default that is null."""
+    """A schema with null, as alternative and as default, removed."""
     kinds = [kind for kind in schema.get("anyOf", ()) if kind != NULL]
     if len(kinds) < len(schema.get("anyOf", ())):
         rest = {key: value for key, value in schema.items() if key != "anyOf"}
@@ -192,7 +192,7 @@ def _without_null(schema: Schema) -> Schema:
 
 
 def _field(schema: Schema) -> Schema:
-    """A field: bounds of a list are those of its numbers; what JSON cannot hold, a default of another table, is out."""
+    """A field with its bounds (a list's on its numbers), unit and registry, without a default that JSON cannot hold."""
     low, high = schema.pop("low", None), schema.pop("high", None)
     unit, registry = schema.pop("unit", None), schema.pop("registry", None)
     if isinstance(schema.get("default"), dict | float) and not _is_plain(schema["default"]):
