@@ -32,10 +32,10 @@ _READINGS = (1.0 / 3.0, 2.0 / 3.0)
 """Shares of the range's travel whose readings are tabulated; the first is drawn."""
 
 _BALLS = ((0.3, 0.0), (0.6, 0.0), (1.0, 0.0), (2.0, 0.0), (0.6, 0.3), (0.6, 0.6), (1.0, 0.6))
-"""Radii and offsets of the balls of the table, R0."""
+"""Radius and offset, in R0, of each ball in the table."""
 
 _EDGES = ((0.3, 0.0), (1.0, 0.0), (0.3, 0.3), (1.0, 0.6))
-"""Radii and offsets of the edges of bars in the table, R0."""
+"""Radius and offset, in R0, of each edge of a bar in the table."""
 
 _TILTS_DEG = (10.0, 20.0)
 _DRAWN_BALL, _FLATTEST, _POINTS = 0.6, 10.0, 41
@@ -43,7 +43,7 @@ _DIGITS = 4
 
 
 def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart | str:
-    """Errors of the force read at the lowest and the highest driving pressure; or why the table has none."""
+    """Errors of the force read at the lowest and the highest driving pressure; or the reason why they are unknown."""
     states = prediction.states[:1] + prediction.states[1:][-1:]
     why = place_unknown(prediction, sensor, states)
     if why is not None:
@@ -87,8 +87,8 @@ def place_unknown(prediction: SensorPrediction, sensor: Sensor, states: Sequence
 
 
 def contact_anywhere(prediction: SensorPrediction, sensor: Sensor) -> ContactAnywhere:
-    """Errors of the force read where object and place of contact are unknown, percent; None where a reading is not
-    reached."""
+    """Errors of the force read where object and place of contact are unknown, percent, None where a reading is not
+    reached; or ``unknown`` alone, the reason why there are none."""
     chart = contact_chart(prediction, sensor)
     if isinstance(chart, str):
         return ContactAnywhere(unknown=chart)
@@ -112,7 +112,7 @@ def contact_anywhere(prediction: SensorPrediction, sensor: Sensor) -> ContactAny
 
 
 def _percent(domes: DomeConditions, places: ContactPlaces, levels: Array) -> Array:
-    """Errors of the force read over the true one, percent, (n, m, k)."""
+    """Error of the force read over the true one, percent, (n, m, k): for n domes, m places and k readings."""
     return np.asarray(100.0 * np.expm1(-force_logs(domes, places, levels)))
 
 
@@ -126,7 +126,7 @@ def _rows(domes: DomeConditions, levels: Array, size: float) -> tuple[ContactRow
 def _round_rows(
     kind: ContactKind, sizes: Sequence[tuple[float, float]], domes: DomeConditions, levels: Array, size: float
 ) -> list[ContactRow]:
-    """Table rows of balls or edges with these radii and offsets, in R0."""
+    """Table rows of balls or edges with these pairs of radius and offset, in R0; ``size`` is R0 in mm."""
     radii, offsets = np.array(sizes).T
     places = (edge_places if kind == "edge" else ball_places)(domes.wall_ratio, radii, offsets)
     errors = _percent(domes, places, levels)

@@ -18,7 +18,7 @@ from pneutouch.units import KPA, ML
 _PLATE = "flat plate, frictionless"
 
 BEYOND = 1.05
-"""A depth up to this share above the greatest measured one counts as measured, like a driving pressure: our choice."""
+"""Depths up to this factor times the greatest measured one count as measured: our choice."""
 
 
 def calibrated_sensor(sensor: Sensor, calibration: SensorCalibration) -> Sensor:
@@ -54,7 +54,7 @@ def friction_spread(calibration: SensorCalibration) -> float | None:
 
 
 def correction_of(calibration: SensorCalibration, response: CalibratedResponse) -> ResponseCorrection:
-    """The factors of a calibration by driving pressure."""
+    """Factors by which a calibration corrects force and pressure rise, by driving pressure."""
     pressures = tuple(pressure_kPa * KPA for pressure_kPa in calibration.source.driving_pressures_kPa)
     return ResponseCorrection(pressures, tuple(response.force_factors), tuple(response.pressure_factors))
 
@@ -71,7 +71,7 @@ def check_options(scene: ResolvedDesign, model: str, clamp: str) -> None:
 
 
 def assumption(scene: ResolvedDesign) -> str:
-    """Sensor that a prediction by a calibration stands for, in one sentence."""
+    """Sentence that states which sensor a prediction with the scene's calibration stands for."""
     calibration = scene.calibration
     assert calibration is not None
     source, response = calibration.source, calibration.response
@@ -138,7 +138,7 @@ def calibrated_error(calibration: SensorCalibration) -> SensitivityError | None:
 
 
 def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has."""
+    """Raise InputError if the atlas, with which every fit is made, does not cover the sensor even at a small depth."""
     why = outside_fit(sensor)
     if why is None:
         return

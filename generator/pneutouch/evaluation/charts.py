@@ -42,18 +42,17 @@ if TYPE_CHECKING:
 
 
 POINTS = 41
-"""Number of driving pressures of a curve."""
+"""Number of driving pressures of the curve of the design itself."""
 
 _BUDGETS = 7
-"""Number of driving pressures at which the interval is computed; its logarithm is linear between them."""
+"""Number of driving pressures at which the interval is computed; its width is linear between them."""
 
 
 def curve(sensor: Sensor, highest: float, label: str) -> SensitivityCurve | None:
     """Sensitivity by the atlas from zero driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point
-    if that comes first.
+    if that comes first, with the factors of a calibration.
 
-    The sensor must lie in the atlas. Pressures at which the atlas has no answer are left out; None if fewer than two
-    are left.
+    Pressures at which the atlas has no answer are left out; None if fewer than two are left, or outside the atlas.
     """
     found = _by_atlas({label: sensor}, highest, POINTS, RATED_SHARE, (OUTSIDE,)).get(label)
     if found is None:
@@ -67,8 +66,8 @@ def under_contact(
 ) -> SensitivityCurve:
     """Convert a sensor's curve under a plate without friction to the sensor's own contact.
 
-    ``states`` are the solid's at a few driving pressures. The logarithm of the ratio is linear between them, and
-    between ``least`` pressures. Pressures at which the ratio cannot be solved are left out.
+    ``states`` are solved states of the solid; more are solved, up to ``least`` in all. Between them the logarithm of
+    the ratio of the curves is linear. Pressures at which the ratio is unknown are left out.
     """
     pressures = tuple((plate.driving_pressure_kPa * KPA).tolist())
     ratio = CorrectedAtlas(sensor, pressures, states, least).ratio[SENSITIVITY]
@@ -91,8 +90,8 @@ def interval(
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
-    ``materials`` are all known resins; ``model`` gives the numerical error. ``states`` are the solid's under contact
-    other than a plate without friction.
+    ``materials`` are all known resins; ``model`` gives the numerical error; ``states`` are states of the solid that are
+    solved already, for a contact other than a plate without friction; ``anywhere`` counts an unknown place of contact.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
     estimate = spread(
@@ -105,10 +104,10 @@ def interval(
 
 
 _POINTS = {"membrane": 12, "atlas": 25, "solid": 4}
-"""Number of driving pressures of a curve by model: the solid needs a tenth of a second for each."""
+"""Number of driving pressures of a resin's curve, by model: the solid needs a tenth of a second for each."""
 
 _MARGIN = 0.95
-"""Curves stop at this share of a resin's own limit."""
+"""Share of a resin's own limit pressure at which its curve stops."""
 
 _AT_DEPTH = 1e-3
 """Difference of logarithms below which the end of a range counts as the depth."""
@@ -118,8 +117,8 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
-    """The same sensor in another resin, with that resin's law and break strain, and without the first resin's
-    correction."""
+    """The sensor in another resin, with that resin's law and break strain, and without the correction of a
+    calibration."""
     return sensor.replace(wall=material_sensor(material).wall, correction=ResponseCorrection())
 
 
@@ -161,9 +160,9 @@ def _by_atlas(
     variants: dict[str, Sensor], highest: float, points: int, share: float, left_out: tuple[int, ...]
 ) -> dict[str, SensitivityCurve]:
     """Curves by title of the sensors that the atlas covers, all in one call, from zero driving pressure to ``highest``
-    (MPa) or ``share`` of their limit points.
+    (MPa) or ``share`` of their limit points. Titles with fewer than two points are left out.
 
-    Pressures without an answer, and pressures whose range ends in one of the ways ``left_out``, are missing.
+    Pressures without an answer, and those at which the range ends in one of the ways ``left_out``, are missing.
     """
     inside = {title: variant for title, variant in variants.items() if outside("atlas", variant) is None}
     if not inside:
@@ -221,7 +220,7 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
 
 
 def air(evaluation: Evaluation) -> GasNotes:
-    """Effects of temperature and speed on the sealed air, one entry a state."""
+    """Effects of temperature and speed on the sealed air, at each driving pressure of the prediction."""
     pressures = [state.driving_pressure for state in evaluation.prediction.states]
     return gas_notes(batch_of(under_plate(evaluation.sensor), pressures))
 
@@ -304,7 +303,7 @@ def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
 
 
 def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
-    """The selection problem of the design: everything but its resin, radius and wall is settled."""
+    """The selection problem of the design at a driving pressure (MPa): only resin, radius and wall are free."""
     sensor, printer, recipe = under_plate(evaluation.sensor), evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(

@@ -1,9 +1,7 @@
-"""Sensors side by side, predicted or measured: the differences of their inputs, and the figures that differ
-significantly.
+"""Sensors side by side, predicted or measured: the inputs that differ, and the figures that differ significantly.
 
-Uncertainty of the difference of two predicted figures: sources that both sensors share cancel in part.
-
-A predicted curve read at the depths of measured runs: a figure belongs to the range it is fitted over.
+Sources of uncertainty that two sensors share cancel in part in the difference of their predicted figures. A predicted
+curve can be read at the depths of measured runs, because a figure belongs to the range it is fitted over.
 """
 
 from __future__ import annotations
@@ -43,7 +41,7 @@ _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "a
 
 @dataclass(frozen=True, slots=True)
 class SourceEffect:
-    """Effect of one standard uncertainty of a source on the logarithm of a figure, with its sign."""
+    """Signed change of the logarithm of a figure by one standard uncertainty of the source ``name``."""
 
     name: str
     origin: str
@@ -51,7 +49,7 @@ class SourceEffect:
 
 
 def effects_of(uncertainty: Mapping[str, Any], figure: str) -> tuple[SourceEffect, ...]:
-    """Effects of every source on a figure, from a state's uncertainty document; their squares sum to its variance."""
+    """Effects of every source on a figure, from a state's uncertainty as data; their squares sum to its variance."""
     entry = uncertainty["figures"][figure]
     total, slopes = entry["standard_uncertainty_relative"], uncertainty["elasticities"][figure]
     origins: dict[str, str] = {}
@@ -109,7 +107,7 @@ CRITERION = (
 
 
 class FigureColumn(NamedTuple):
-    """A figure that is compared: its key, name and unit; of a state or of the whole sensor."""
+    """A figure that is compared: key, name and unit; ``of_state``: False for a figure of the whole sensor."""
 
     key: str
     name: str
@@ -142,7 +140,7 @@ class ComparedFigure:
 
     @property
     def variance(self) -> float | None:
-        """Variance of the logarithm, from the effects or else from the k = 2 interval; None without either."""
+        """Variance of the figure's logarithm, from the effects, else from the k = 2 interval; None without either."""
         if self.effects:
             return sum(effect.size**2 for effect in self.effects)
         if self.low is None or self.high is None or self.value == 0:
@@ -154,7 +152,7 @@ class ComparedFigure:
 
 @dataclass(frozen=True, slots=True)
 class ComparedState:
-    """Figures by key at a driving pressure, and curves: one predicted, or one for each measured run."""
+    """Figures by key at a driving pressure, and curves: the predicted one, or one for each measured run."""
 
     driving_pressure_kPa: float
     figures: Mapping[str, ComparedFigure]
@@ -181,12 +179,12 @@ class ComparedSensor:
     simulated: bool = False
 
     def state(self, pressure_kPa: float) -> ComparedState | None:
-        """The state at a driving pressure, or None."""
+        """The state at a driving pressure; None if the sensor has none there."""
         return next((s for s in self.states if abs(s.driving_pressure_kPa - pressure_kPa) < _CLOSE), None)
 
 
 def labelled(sensors: Sequence[ComparedSensor]) -> tuple[str, ...]:
-    """Label of each column: the sensor's name, its source if names are equal, numbered if labels still are."""
+    """Labels of the columns: the sensor's name, or its source if names are equal; equal labels are numbered."""
     names = [sensor.name for sensor in sensors]
     texts = [s.source if names.count(s.name) > 1 and s.source else s.name for s in sensors]
     return tuple(f"{text} ({k})" if texts.count(text) > 1 else text for k, text in enumerate(texts, start=1))
@@ -213,7 +211,7 @@ def _listed(sensor: ComparedSensor) -> str:
 
 
 def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, tuple[Any, ...]]:
-    """Inputs that differ, by key, with one value for each sensor; None if unknown."""
+    """Inputs that differ between predicted sensors, by key: a value for each sensor, None if it is not known."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
     # What a prediction does not name it has not, but the wall, which a calibration alone names; of a measurement no
     # input is known.
@@ -224,7 +222,7 @@ def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, tuple[Any, 
 
 
 def comparison(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
-    """A comparison of the other sensors with the first one. Raises InputError if there is nothing to compare."""
+    """Comparison of every other sensor with the first. Raises InputError if no driving pressure is common to all."""
     pressures_kPa = shared_pressures_kPa(sensors)
     rows = [_row(figure, None, sensors) for figure in FIGURES if not figure.of_state]
     rows += [_row(figure, p, sensors) for p in pressures_kPa for figure in FIGURES if figure.of_state]
@@ -282,7 +280,7 @@ def _of(sensor: ComparedSensor, key: str, pressure_kPa: float | None) -> Compare
 def _difference(
     one: ComparedFigure | None, other: ComparedFigure | None, *, same_resin: bool
 ) -> DifferenceRecord | None:
-    """The second figure less the first, with the interval in percent, and True if it exceeds its uncertainty."""
+    """``other`` less ``one``, with interval in percent and the criterion applied; None if one of them is missing."""
     if one is None or other is None:
         return None
     difference = other.value - one.value
@@ -300,7 +298,7 @@ def _difference(
 
 
 def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:
-    """Assumptions, and parts that were left out."""
+    """Notes on assumptions and on driving pressures that are left out, then the sensors' own."""
     notes = []
     predicted = [s for s in sensors if s.resin is not None]
     if len(predicted) > 1 and sensors[0].resin is not None:
@@ -337,8 +335,8 @@ def figures_at(
     """Figures of a curve (mm, N, kPa; one length) by key of `bench.figures.FIGURES`, as measured runs would give them.
 
     ``specimens`` holds the depths of each run of each specimen, mm. The curve is read at every run's own depths, as far
-    as its range goes, and the figures are averaged as measured ones are: over the runs, then over the specimens.
-    Saturation is left out where a run does not reach it.
+    as ``range_end`` (mm), and the figures are averaged as measured ones are: over the runs, then over the specimens.
+    Saturation is left out where a run does not reach it. Empty if the curve has too few points.
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -1,6 +1,6 @@
-"""The object that presses a design's sensor, as the solid takes it.
+"""The object that presses a design's sensor, as the solid takes it, and checks of object and plate.
 
-Basis of the uncertainty of a sensor under another contact than a plate without friction, in words.
+Notes on the uncertainty of a sensor under a contact other than a plate without friction.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _AT_ONCE = 1e-6
 """Indentation, as a share of R0, up to which contact that reaches an edge does so at first touch."""
 
 _STEEPEST = math.radians(60.0)
-"""Greatest lean of the dome, off the axis, at which a round object may touch it first."""
+"""Greatest lean (angle to the axis) of the place at which a round object off the axis may touch the dome first."""
 
 _POINTS = 2001
 """Number of points of the unloaded dome among which first touch is sought."""
@@ -65,8 +65,8 @@ def contact_object(scene: ResolvedDesign) -> RigidObject | None:
 
 
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
-    """``contact`` with the pressing object, by the keys of ``[contact]``; empty for a frictionless plate with its usual
-    rim. A surface that grips has the friction "inf"."""
+    """The entry ``contact`` of a document: the pressing object by the keys of ``[contact]``; empty for a frictionless
+    plate with its usual rim. A surface that grips has the friction "inf"."""
     contact = scene.design.contact
     if contact.is_atlas_plate:
         return {}
@@ -119,7 +119,7 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError for an offset at which the object touches the dome lower than at 60 degrees, or not at all."""
+    """Raise InputError for an offset with a first touch on a flank over 60 degrees, by a plate's edge, or with none."""
     test, shape = sensor.protocol, sensor.dome.shape
     if not test.offset:
         return
@@ -160,8 +160,8 @@ def object_section(sensor: Sensor) -> Array | None:
 
 
 def _at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
-    """Height of the object at first contact with the unloaded dome, and the distance of that contact from its axis,
-    mm."""
+    """Height of the object at first contact with the unloaded dome, and distance of that contact from the object's
+    axis, mm."""
     # An object off the axis touches first on its side of the plane of symmetry.
     r, z = sensor.dome.shape.points(np.linspace(1.0, 0.0, _POINTS), np.ones(1))[:, 0].T
     return first_contact(body, np.abs(r - sensor.protocol.offset), z)
@@ -181,13 +181,13 @@ def _edge_first(scene: ResolvedDesign) -> InputError:
 
 
 def _object_error(scene: ResolvedDesign, problem: str, remedy: str, which: int = -1) -> InputError:
-    """InputError about the object, on one of the keys of its sizes; the last key sets its least radius."""
+    """InputError on the size number ``which`` of the object; the last size sets its least radius."""
     key, value = list[tuple[str, Any]](scene.design.contact.sizes().items())[which]
     return InputError(problem, file=scene.where, key=f"contact.{key}", value=value, remedy=remedy)
 
 
 def check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
-    """Refuse a plate whose edge would dig into the dome within the depth."""
+    """Raise InputError for a plate whose edge the contact reaches within the depth."""
     for state in prediction.states:
         ending = [event for event in state.events if event.ends_range]
         if ending and ending[0].kind == "plate edge":
@@ -203,7 +203,7 @@ def check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
 
 
 def contact_notes(sensor: Sensor, contact: ContactModel | None) -> tuple[str, ...]:
-    """Notes on the uncertainty under a contact; none for a plate without friction."""
+    """Notes on the uncertainty under a contact; empty if ``contact`` is None, for a plate without friction."""
     if contact is None:
         return ()
     notes = [

@@ -25,7 +25,7 @@ GAP = "gap"
 """Name of the piece of an air path that is a volume next to the cavity, not a duct."""
 
 GAUGE_RATE = "sampling of the gauge"
-"""Name of the gauge's limit of the bandwidth; the other limits are those of `mechanics.line.band`."""
+"""Name of the limit of the bandwidth that the gauge sets; the other limit is named ``line``."""
 
 _DIGITS = 6
 
@@ -35,7 +35,7 @@ _SAME = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class DynamicState:
-    """One driving pressure in one series of relaxation data; ``source`` None: a wall that does not relax."""
+    """Dynamics at one driving pressure, MPa, by one ``source`` of relaxation data; None: the wall does not relax."""
 
     driving_pressure: float
     source: str | None
@@ -59,7 +59,7 @@ class SensorBandwidth:
     Attributes:
         pieces: The air's path as drawn.
         end_volume: Gas behind the path, mm3: of the gauge, or the excess of the stated dead volume.
-        note: Note if the prediction's dead volume is not that of the path; else None.
+        note: Note if the stated dead volume is less than that of the path; else None.
         rate_Hz: Readings a second of the gauge; None if that is unknown.
         states: One for each driving pressure and series of relaxation data.
     """
@@ -72,7 +72,7 @@ class SensorBandwidth:
 
 
 def sensor_bandwidth(assembly: Assembly, sensor: Sensor, prediction: SensorPrediction) -> SensorBandwidth:
-    """The figures of every state, for a small step of force at first contact."""
+    """Dynamics of every state for a small step of force at first contact, by every series of relaxation data."""
     pieces, end, note = line_of(assembly, sensor)
     series: tuple[Prony | None, ...] = prony_series(assembly.scene.membrane_material) or (None,)
     states = []
@@ -101,7 +101,7 @@ def line_of(assembly: Assembly, sensor: Sensor) -> tuple[tuple[AirPiece, ...], f
 def state_dynamics(
     assembly: Assembly, sensor: Sensor, state: SensorState, series: Prony | None, compliance: float
 ) -> SensorDynamics:
-    """Linear dynamics of a state for small changes, with a ``compliance`` of the wall in mm3/MPa."""
+    """Linear dynamics of a state for small changes; ``compliance`` of the wall in mm3/MPa, ``series`` None: elastic."""
     pieces, end, _ = line_of(assembly, sensor)
     air = AirState(sensor.gas.ambient_pressure + state.driving_pressure)
     elements: list[Duct | GasVolume] = [
@@ -132,14 +132,14 @@ def free_compliance(prediction: SensorPrediction, state: SensorState) -> float:
 
 
 def gauge_rate_Hz(scene: ResolvedDesign) -> float | None:
-    """Readings a second of the design's gauge; None without one, or where it is unknown."""
+    """Readings a second of the design's gauge; None if it names none or the rate is unknown."""
     gauge = scene.gauge
     rate = None if gauge is None else gauge.rate_Hz
     return None if rate is None else rate.nominal
 
 
 def dynamics(figures: SensorBandwidth) -> Dynamics:
-    """The figures in boundary units, see docs/background/dynamics.md."""
+    """Record of the bandwidth in boundary units, see docs/background/dynamics.md."""
     record = Dynamics(
         basis=BASIS,
         line=tuple(

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 # Print rules, uncertainty and calibrations load where they are used: figures of a drawn sensor need none of them.
 
 CLAMPS = ("base", "flange")
-"""Clamps: the faces at which the solid is held."""
+"""Names of the faces at which the solid can be held."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class PredictionOptions:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """A scene with its bodies and its prediction; findings are made on demand."""
+    """A scene with its bodies and its prediction; all else is computed when it is first used."""
 
     scene: ResolvedDesign
     assembly: Assembly
@@ -76,7 +76,7 @@ class Evaluation:
 
     @property
     def alike(self) -> Resins:
-        """Resins of `resins` that are made as the membrane is: printed, or those of the casting profile."""
+        """Those of `resins` that are made as the membrane is: printed, or by the casting profile."""
         return alike(self.scene.printer, self.resins)
 
     @cached_property
@@ -111,7 +111,7 @@ class Evaluation:
 
     @cached_property
     def uncertainty(self) -> tuple[UncertaintyRecord, ...]:
-        """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the
+        """Uncertainty of the figures of each state; computed on first use, because a sweep without it takes less
         time."""
         from pneutouch.evaluation.uncertainty import uncertainties
 
@@ -119,8 +119,8 @@ class Evaluation:
 
     @cached_property
     def as_drawn(self) -> SensorPrediction | None:
-        """The prediction with the gas of connector and tube as drawn, by the atlas, where the design states none; None
-        beside the membrane's trend, which loads no tables."""
+        """Prediction by the atlas with the gas as drawn, if a dead volume of 0 is stated behind a tube; else None, as
+        for the model membrane, which loads no tables, and outside the atlas."""
         if not self.assembly.dead_volume_note or self.prediction.model == "membrane":
             return None
         sensor = self.sensor.replace(dead_volume=self.assembly.drawn_volume)
@@ -142,7 +142,7 @@ class Evaluation:
 
     @cached_property
     def curves(self) -> tuple[CurveOutcome, ...]:
-        """The sensor by every mixing curve of its mix; empty for a resin, and for a calibrated sensor."""
+        """Outcomes by every mixing curve of the membrane's mix; empty for a resin, and for a calibrated sensor."""
         if self.scene.calibration is not None or not self.scene.membrane_material.curves:
             return ()
         from pneutouch.mechanics.mixing_curves import curve_outcomes
@@ -159,7 +159,7 @@ class Evaluation:
 
     @cached_property
     def viscous_runs(self) -> ViscousRuns | str:
-        """Relaxation and loops of every state, or why they are not predicted."""
+        """Relaxation and loops of every state, or the reason why they are not predicted."""
         from pneutouch.evaluation.relaxation import viscous_runs
 
         return viscous_runs(self.prediction, self.scene.membrane_material, self.sensor)
@@ -228,8 +228,8 @@ def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
 def evaluate_drawn(
     drawn: DrawnScene, find_resins: Callable[[], Resins], answers: Mapping[str, Answered] = MappingProxyType({})
 ) -> Evaluation:
-    """Predict a drawn scene; ``answers`` are results already computed, by the model's name. Raises InputError if it
-    cannot work."""
+    """Predict a drawn scene; ``answers`` are results of models already computed, by the model's name. Raises InputError
+    if the scene cannot work."""
     scene, assembly, sensor, options, aged = drawn
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
@@ -296,7 +296,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
 
 
 def _material_sensor(scene: ResolvedDesign) -> Sensor:
-    """The paper's sensor in the scene's resin; an error of its law names the design's key of the material."""
+    """The paper's sensor in the scene's resin. Raises InputError, on the design's key of the material, for its law."""
     try:
         return material_sensor(scene.membrane_material)
     except InputError as error:
@@ -304,13 +304,13 @@ def _material_sensor(scene: ResolvedDesign) -> Sensor:
 
 
 def _material_error(scene: ResolvedDesign, error: InputError) -> InputError:
-    """An error of a material, with the key of the design that names it."""
+    """InputError of a material, moved to the key of the design that names the material."""
     return InputError(str(error), file=scene.where, key="membrane.material", value=scene.design.membrane.material)
 
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
-    """The sensor after a year, and the assumption on it. Raises InputError if the resin's hardness then is not
-    known."""
+    """The sensor after a year, and the assumption on it in words. Raises InputError if the resin's hardness after a
+    year is not known."""
     material = scene.membrane_material
     remaining = 1.0 if scene.calibration is None else scene.calibration.remaining_year
     try:
@@ -324,7 +324,7 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
 
 
 def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
-    """The error of a pressure beyond the limit point, in terms of the design file."""
+    """InputError for a driving pressure beyond the limit point, on the key of the design file that states it."""
     pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
     k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures_kPa]))
     return StatedPressureError(

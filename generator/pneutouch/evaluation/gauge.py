@@ -28,7 +28,7 @@ def reading_of(scene: ResolvedDesign) -> GaugeReading:
 
 
 def _smallest_force(threshold: float | None, drift_kPa_per_K: float, state: SensorState) -> GaugeState:
-    """The smallest force by a threshold (MPa) of the gauge, and the forces that a drift of the zero reads as."""
+    """The smallest force by a ``threshold`` (MPa, None: unknown), and the force that a drift of the zero reads as."""
     at_kPa = state.driving_pressure / KPA
     if state.figures is None:
         return GaugeState(at_kPa, None, None, drift_kPa_per_K, None, None)
@@ -40,7 +40,7 @@ def _smallest_force(threshold: float | None, drift_kPa_per_K: float, state: Sens
 
 
 def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> float | None:
-    """The force (N) at which a curve, (n,) each and from 0, reaches a pressure rise; None if it does not.
+    """Force (N) at which a curve, (n,) each and from 0, reaches the rise ``threshold``; None if it does not.
 
     Below the first loaded point the rise is a power of the force, through that point and the next: an inflated dome
     yields in proportion to the force, and the volume that it displaces grows with the square of the travel.
@@ -57,7 +57,7 @@ def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> floa
 
 
 def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
-    """Pressure change of the shut-in gas by temperature without contact, kPa/K.
+    """Pressure change of the sealed gas with temperature, without contact, kPa/K.
 
     The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
     """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 COLUMNS = 41
-"""Number of indentations in a row of the grid: the first is no contact, the last the end of the range."""
+"""Number of indentations in a row of the grid, from no contact to the end of the range."""
 
 ROWS = {"atlas": 17, "membrane": 17, "solid": 9, "harmonic": 5}
 """Number of driving pressures of the grid by model: the cost of a press differs a thousandfold."""
@@ -35,13 +35,13 @@ CHANGE_K = 5.0
 """Change of the gas temperature since the tare, up and down, that a reader corrects: our choice."""
 
 CHANGE_KPA = 3.0
-"""Ambient pressure, up and down from the design's, that a reader corrects: our choice, the weather of most days."""
+"""Change of the ambient pressure, up and down, that a reader corrects: our choice, the weather of most days."""
 
 REFERENCE_K = 293.15
 """Temperature, K, from which changes of temperature are counted."""
 
 _LIMIT_SHARE = 0.97
-"""Share of the limit point up to which the grid goes beyond the highest driving pressure of the design."""
+"""Share of the limit point, or of the gauge's limit, up to which the grid goes beyond the design's pressures."""
 
 
 class ReaderCurve(NamedTuple):
@@ -60,10 +60,10 @@ class ReaderGrid:
 
     Attributes:
         driving_pressure: Equal steps, MPa (n,). Rows below zero are extrapolated: see `computed`.
-        computed: Number of the first row that the model computed.
+        computed: Index of the first row that the model computed, the number of extrapolated rows.
         reach: Indentation of the last column, mm (n,).
         force: N (n, m), the first column 0, ascending along the rows.
-        rise: MPa (n, m), likewise.
+        rise: MPa (n, m), the first column 0, ascending along the rows.
         pressure_factor: Pressure rise of the sensor over that of the gas law, (n,): 1 without a calibration.
         gas_pressure: Equal steps over the same span, MPa (k,).
         gas_volume: Cavity and dead volume without contact at these, mm3 (k,).
@@ -132,12 +132,12 @@ def reader_grid(evaluation: Evaluation) -> ReaderGrid:
 
 
 def fine(sensor: Sensor) -> Sensor:
-    """The sensor pressed in as many steps as the grid has."""
+    """The sensor pressed in at least as many steps as the grid has."""
     return sensor.replace(steps=max(COLUMNS - 1, sensor.protocol.steps))
 
 
 def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) -> tuple[Array, int, float, float]:
-    """Rows of the grid, number of the first that is not below zero, lowest and highest driving pressure of the box.
+    """Rows of the grid, index of the first that is not below zero, lowest and highest driving pressure of the box; MPa.
 
     The box goes beyond the design's driving pressures by the effect of a temperature change of `CHANGE_K`, and the grid
     beyond the box by the effect of the ambient pressure. Below zero the models have no answer.
@@ -193,14 +193,14 @@ def _at(x: Array, y: Array, at: Array) -> Array:
 
 
 def _deepest(evaluation: Evaluation) -> float:
-    """Greatest indentation that the calibration covers, mm; infinite without a calibration."""
+    """Greatest indentation that the calibration covers, mm; infinite without a calibration or a measured depth."""
     calibration = evaluation.scene.calibration
     measured = None if calibration is None else calibration.source.depth_mm
     return np.inf if measured is None else BEYOND * measured
 
 
 def _common_reach(ends: Array) -> Array:
-    """Ends of the rows, none more than a tenth beyond its neighbour's: between rows both are read at one share."""
+    """Ends of the rows (n,), none over 1.1 times a neighbour's: between rows both are read at one share of them."""
     reach = ends.copy()
     for order in (range(1, len(ends)), range(len(ends) - 2, -1, -1)):
         step = 1 if order.step == 1 else -1
@@ -210,7 +210,7 @@ def _common_reach(ends: Array) -> Array:
 
 
 def _continued(rows: Array, below: int) -> Array:
-    """Rows with ``below`` rows added in front, by the parabola through the first three."""
+    """Rows with ``below`` rows added in front, extrapolated by the parabola through the first three."""
     steps = -np.arange(below, 0, -1).reshape(-1, *[1] * (rows.ndim - 1))
     a, b, c = rows[0], rows[1], rows[2]
     added = a + steps * (b - a) + 0.5 * steps * (steps - 1) * (c - 2 * b + a)
@@ -218,7 +218,7 @@ def _continued(rows: Array, below: int) -> Array:
 
 
 def _gas_volume(prediction: SensorPrediction, sensor: Sensor, pressures: Array) -> Array:
-    """Cavity and dead volume without contact at driving pressures, mm3; below zero by the slope at zero."""
+    """Cavity and dead volume without contact at driving pressures, mm3; below zero with the slope at zero."""
     inflation = prediction.inflation
     top = int(np.argmax(inflation.pressure))
     pressure, volume = inflation.pressure[: top + 1], inflation.volume[: top + 1]
@@ -229,17 +229,17 @@ def _gas_volume(prediction: SensorPrediction, sensor: Sensor, pressures: Array) 
 
 
 STATES = 10_000
-"""Number of compared states if a press costs next to nothing."""
+"""Number of states compared under the conditions of the tare, over all presses."""
 
 _PRESSES = {"atlas": 100, "membrane": 100}
 _FEW = 4
-"""Number of presses compared if each costs seconds."""
+"""Number of presses if each costs seconds, for models that ``_PRESSES`` does not name."""
 
 _READ = (Status.OK, Status.ABOVE_RATING)
 
 
 class ReaderDifference(NamedTuple):
-    """Largest differences of the force from the full model, N; ``states`` is the number of states compared as tared."""
+    """Largest differences of the force from the full model, N; ``states``: number compared as when tared."""
 
     nominal_N: float
     other_conditions_N: float
@@ -249,7 +249,7 @@ class ReaderDifference(NamedTuple):
 def reader_difference(evaluation: Evaluation, grid: ReaderGrid, record: dict[str, Any]) -> ReaderDifference:
     """Compare a reader with the full model at random states of its box, the same ones each time.
 
-    Once as tared, once at other temperatures of the gas and at other ambient pressures.
+    Under the conditions of the tare, and at other gas temperatures and ambient pressures. Raises ComputationError.
     """
     draw = np.random.default_rng(0)
     presses = _PRESSES.get(grid.model, _FEW)
@@ -289,7 +289,7 @@ def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures:
 def _tared(
     reader: ForceReader, sensor: Sensor, pressure: float, curve: ReaderCurve, grid: ReaderGrid
 ) -> Iterator[dict[str, float]]:
-    """Tare so that gas warmed or cooled since has a curve's driving pressure (MPa); yields the conditions then."""
+    """Tare with gas that, warmed or cooled by `CHANGE_K`, gets to ``pressure`` (MPa); yield the later conditions."""
     ambient = sensor.gas.ambient_pressure
     for change in (-CHANGE_K, CHANGE_K):
         ratio = 1.0 + change / REFERENCE_K

@@ -48,7 +48,7 @@ _STEPS = 40
 
 def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid, aged: float) -> Array | None:
     """Relative standard uncertainty of the force at the rows of a grid and `UNCERTAINTY_COLUMNS` shares of the
-    indentation, (n, 11); None if it is unknown, see `why_unknown`. ``aged`` are the years of `sources`.
+    indentation, (n, 11); None if it is unknown, see `why_unknown`. ``aged`` is the age that counts, years.
 
     Sources that act on inputs of the model act through the curve of force over pressure rise; errors of the model are
     those of its sensitivity, the slope of that curve. The gauge's noise is not in it.
@@ -88,7 +88,7 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
 
 
 def _slopes(batch: SensorBatch) -> Array:
-    """Derivatives of ln force at a fixed rise by ln of each input, by mm3 of dead volume, (inputs, n, columns)."""
+    """Derivatives of ln force at a fixed rise by ln of an input (by mm3 of dead volume), (inputs, n, columns)."""
     from pneutouch.mechanics.atlas.figures import INPUTS, moved, neighbourhood, unit_step
     from pneutouch.mechanics.atlas.respond import respond
 
@@ -108,7 +108,7 @@ def _slopes(batch: SensorBatch) -> Array:
 
 
 def _log_force(curve: Sequence[Array], rises: Array) -> Array:
-    """Logarithm of a curve's force at pressure rises; beyond its end by its last power of the rise."""
+    """Logarithm of a curve's force at pressure rises; beyond its ends by its last, or first, power of the rise."""
     rise, force = np.log(curve[0][1:]), np.log(curve[1][1:])
     at = np.log(rises)
     inside = np.interp(at, rise, force)
@@ -118,7 +118,7 @@ def _log_force(curve: Sequence[Array], rises: Array) -> Array:
 
 
 _DRIFT_SHARE = 0.001
-"""Share of full scale that a driving pressure just below its box may be off by without a status."""
+"""Share of full scale by which the table may be off, without a status, at a driving pressure just below its box."""
 
 AIR_K_PER_H = 2.2
 """Fastest change of the air's temperature whose drift is followed, K/h: the ramp that ANSI/ASHRAE 55 allows within an
@@ -187,7 +187,7 @@ def _box(grid: ReaderGrid, ambient_kPa: float) -> ReaderBox:
 
 
 def _gauge(evaluation: Evaluation) -> ReadGauge:
-    """The gauge of the design and the gauge pressures that it reads; without one the sensor's limit."""
+    """The gauge of the design and the gauge pressures that it reads; without one from vacuum to the sensor's limit."""
     gauge, gas = evaluation.scene.gauge, evaluation.sensor.gas
     ambient_kPa = gas.ambient_pressure / KPA
     if gauge is None:

@@ -23,7 +23,7 @@ _DIGITS = 6
 
 
 def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Sensor) -> ViscousRuns | str:
-    """The runs of every state of a prediction, or why there are none."""
+    """The runs of every state of a prediction, or the reason why there are none."""
     why = unknown(sensor, material, prediction.model)
     if why is not None:
         return why
@@ -36,7 +36,7 @@ def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Senso
 
 
 def viscous(runs: ViscousRuns | str) -> Viscous:
-    """Relaxation and hysteresis of every state in every source of data."""
+    """Record of relaxation and hysteresis of every state by every source of data, or of why there is none."""
     if isinstance(runs, str):
         return Viscous(unknown=runs)
     from pneutouch.mechanics.viscous.describe import RAMP_SPEED

@@ -27,7 +27,7 @@ ALL = ("all",)
 
 @dataclass(frozen=True)
 class SimulatedResin:
-    """A resin's scene and nominal sensor, and the simulator's truth for its printer and the resin's ageing."""
+    """A resin's scene and nominal sensor, and the simulator's true parameters for its printer, gauge and ageing."""
 
     name: str
     scene: ResolvedDesign
@@ -59,7 +59,7 @@ def resins_of(
     truth: SimulationTruth = TRUTH,
     library: Library | None = None,
 ) -> list[SimulatedResin]:
-    """The design in each of ``resins``: its own if none is given, Table S1's for "all". Raises InputError."""
+    """The design in each of ``resins``; in its own if none is given, in Table S1's for `ALL`. Raises InputError."""
     library = library or Library.default()
     given = load_scene(design, changes, library)
     known = elastomers(library, given.printer.is_casting)
@@ -88,14 +88,14 @@ def resins_of(
 
 
 def resin_of(scene: ResolvedDesign) -> str:
-    """Name that a campaign gives the membrane of a design: its resin, or "as designed" for a mix."""
+    """Name that a campaign gives the membrane of a design: its resin, or `AS_DESIGNED` for a mix."""
     chosen = scene.design.membrane.material
     return chosen if isinstance(chosen, str) else AS_DESIGNED
 
 
 def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> PressCurves:
-    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError gives the greatest allowed
-    pressure."""
+    """Curves of `press_curves` at ascending pressures, MPa, to a depth, mm. Raises InputError with the greatest allowed
+    pressure for one beyond the limit point."""
     try:
         return press_curves(sensor, pressures, depth, model)
     except BeyondLimitError as error:

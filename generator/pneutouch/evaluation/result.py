@@ -1,4 +1,4 @@
-"""A prediction as a record: the states of the model in boundary units, their uncertainty, and what else is known."""
+"""A prediction as a record: states in boundary units, their uncertainty, and all else that is known of the sensor."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _NOTHING = 1e-12
 
 
 def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """A prediction with its rating and the uncertainty of every state, sampled as well where ``samples`` > 0."""
+    """A prediction's record with rating and uncertainty of every state; ``samples`` > 0 adds sampled intervals."""
     uncertainty = evaluation.uncertainty
     if samples:
         uncertainty = uncertainties(
@@ -75,13 +75,13 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
 
 
 def _drawn_mL(evaluation: Evaluation) -> float | None:
-    """The gas of connector and tube as drawn, where the design states none."""
+    """Gas volume of connector, tube and gauge as drawn, mL, if 0 is stated behind a tube; else None."""
     assembly = evaluation.assembly
     return float(rounded(assembly.drawn_volume / ML, _MODEL_DIGITS)) if assembly.dead_volume_note else None
 
 
 def states_as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
-    """The states with the gas of connector and tube as drawn; none where `Evaluation.as_drawn` is None."""
+    """The states of `Evaluation.as_drawn`, with the gas as drawn; empty if it is None."""
     return () if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states
 
 
@@ -93,7 +93,7 @@ def _anywhere(evaluation: Evaluation) -> ContactAnywhere:
 
 
 def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """`predicted` with relaxation and speed, and with gauge, mixing curves, calibration and age where there are any."""
+    """`predicted` with relaxation and speed, and with gauge, mixing curves, calibration and ageing if there are any."""
     scene = evaluation.scene
     return replace(
         predicted(evaluation, samples),
@@ -107,8 +107,8 @@ def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRec
 
 
 def by_model(prediction: SensorPrediction, *, curves: bool = True) -> PredictionRecord:
-    """A prediction by the model, without rating and uncertainty; with ``curves`` False also without the curves of
-    central contact, which take the most time."""
+    """A prediction's record without rating and uncertainty; with ``curves`` False also without inflation and without
+    the curves of central contact, which take the most time."""
     inflation = prediction.inflation if curves else InflationCurve(*[np.empty(0)] * 4)
     record = PredictionRecord(
         design=prediction.design,

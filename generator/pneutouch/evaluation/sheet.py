@@ -1,6 +1,6 @@
-"""A datasheet's record made from an evaluation.
+"""The record that a datasheet is drawn from, made from an evaluation.
 
-The pressed dome of a datasheet, evaluated from the Fourier sums of a prediction.
+It holds the pressed dome, evaluated from the Fourier sums of a prediction, and membranes to compare a graded one with.
 """
 
 from dataclasses import replace
@@ -32,7 +32,7 @@ _ANGLES = 64
 
 
 def pressed_view(prediction: SensorPrediction) -> PressedView | None:
-    """The dome at the first driving pressure, pressed to the end of its range; None by a model without a surface."""
+    """The dome at the first driving pressure, pressed to its range's end; None if the model gives no surface."""
     state = prediction.states[0]
     if state.face is None:
         return None
@@ -70,7 +70,7 @@ def _normals(points: Array) -> Array:
 
 
 _LEAST_SPAN = 22 * KPA
-"""Least driving pressure that the sensitivity plot reaches, MPa: the paper's highest."""
+"""Driving pressure, MPa, up to which the sensitivity plot reaches at least: the paper's highest."""
 
 
 def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
@@ -116,7 +116,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
 
 
 def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[ComparedMembrane, ...]:
-    """Sensors with the least, mean and greatest modulus of a graded wall throughout; none for other walls."""
+    """Membranes with the least, mean and greatest modulus of a graded wall throughout; empty for other walls."""
     if sensor.wall.grade is None:
         return ()
     pressures = np.array([state.driving_pressure for state in prediction.states])
@@ -129,7 +129,7 @@ def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[Co
 
 
 def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
-    """A constant membrane at the pressures that it can be solved for; None if there are none."""
+    """A constant membrane at the lowest of the pressures, as many as can be solved; None if none can."""
     from pneutouch.mechanics.models.solid import solid_states
 
     for count in range(pressures.size, 0, -1):
@@ -143,7 +143,7 @@ def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMemb
 def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor) -> AgeingData | str:
     """Modulus after a year and the change of sensitivity at the lowest and highest pressure, or why it is unknown.
 
-    Outside the atlas there is no change of sensitivity.
+    Outside the atlas no change of sensitivity is given.
     """
     why = ageing_unknown(material)
     if why is not None:

@@ -1,6 +1,6 @@
-"""The record that a datasheet is drawn from: everything on the sheet that is computed stands here.
+"""The record that a datasheet is drawn from, with all computed figures of the sheet.
 
-Records that charts are drawn from: they hold computed figures and compute nothing.
+Its charts have records of their own, which hold figures and compute nothing.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class AgeingData(NamedTuple):
-    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and change of
+    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and relative change of
     sensitivity."""
 
     modulus_ratio: float
@@ -49,27 +49,27 @@ class SheetData:
         uncertainty: One record for each state, as `Evaluation.uncertainty`.
         estimates: Resin, support and time of each print job.
         rating: The rated driving pressure and what it follows from.
-        numerical_error: Stated relative error in sensitivity of the model.
+        numerical_error: Relative numerical error in sensitivity that the model states.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
         gauge: Range of the gauge, and the smallest force at each driving pressure.
-        resin_curves: The same sensor in every resin, by title.
-        viscous: Relaxation and hysteresis, or why they are not predicted.
+        resin_curves: Sensitivity curves of the same sensor in every resin, by title.
+        viscous: Relaxation and hysteresis, or the reason why they are not predicted.
         viscous_runs: Runs from which relaxation and hysteresis are read; None where they are not predicted.
-        ageing: Change after a year, or why it is unknown.
+        ageing: Change after a year, or the reason why it is unknown.
         constants: Membranes of constant mix to compare a graded one with.
         published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
         gas: Effect of the air, one entry a state; None outside the atlas.
         tradeoff: The trade-off that the design is part of; None outside the atlas.
         tuning: Sensitivity of the design over the driving pressure; None outside the atlas.
-        contact: Errors of the force read where contact is not central, or why they are not known.
-        other_contact: True if something else than a plate without friction presses it.
+        contact: Errors of the force read where contact is not central, or the reason why they are unknown.
+        other_contact: True if the contact is other than that of a plate without friction.
         object_section: Section (n, 2) in mm, x and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
         speed: Speed of the sensor's reading; None if that was not computed.
         pour: The silicone to weigh; None if the membrane is not cast.
         curves: The sensor by every mixing curve of its mix, the softest first.
-        as_drawn: The states with the gas of connector and tube as drawn, where the design states none.
+        as_drawn: The states with the gas as drawn, if a dead volume of 0 is stated behind a tube; else empty.
     """
 
     scene: ResolvedDesign
@@ -103,7 +103,7 @@ class SheetData:
 
 
 class SensitivityCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and what to call it."""
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and its label."""
 
     driving_pressure_kPa: Array
     sensitivity: Array
@@ -112,7 +112,7 @@ class SensitivityCurve(NamedTuple):
 
 
 class ComparedMembrane(NamedTuple):
-    """A membrane with its states, driving pressures ascending."""
+    """A membrane to compare with: its label and its states, driving pressures ascending."""
 
     label: str
     states: tuple[SensorState, ...]
@@ -126,7 +126,7 @@ class TuningChart:
         chosen: The curve.
         low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,); None if that is not known.
         high_kPa_per_N: Upper end, (n,).
-        working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
+        working_kPa_per_N: Sensitivities at the design's own driving pressures, kPa to kPa/N.
         others: Designs to compare with.
         published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
         caption: Note below the chart on what the curves leave out; empty for no note.
@@ -142,7 +142,7 @@ class TuningChart:
 
 
 class ChartPoint(NamedTuple):
-    """A design on the chart: title of its resin, name beside the point, and figures."""
+    """A design in the trade-off: title of its resin, text beside the point, and figures."""
 
     resin: str
     label: str
@@ -161,7 +161,7 @@ class TradeOff:
         force: Least required force range, N; None if free.
         spots: Designs to mark, the first one highlighted.
         caption: Note below the chart on what the fronts leave out; empty for no note.
-        errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
+        errors: Median and greatest relative difference of the fronts from the solid, which corrects them; else None.
     """
 
     fronts: tuple[TradeOffFront, ...]
@@ -180,8 +180,8 @@ class TradeOff:
 
 
 class ErrorCurves(NamedTuple):
-    """Errors of the force read (percent, (n,) at each driving pressure, NaN if the reading is not reached) over a
-    size or a place of contact, (n,)."""
+    """Errors of the force read over ``along``, (n,), a size or a place of contact: percent, (n,) for each driving
+    pressure, NaN if the reading is not reached."""
 
     along: Array
     errors_percent: tuple[Array, ...]
@@ -204,16 +204,16 @@ class ContactChart:
 
     Attributes:
         driving_pressures_kPa: The lowest and the highest of the design, kPa.
-        rises_kPa: Pressure rises of the rows at each of them, kPa; the curves are at the first.
-        forces: Contact forces of the central plate at these, N.
+        rises_kPa: Pressure rises of the rows at each driving pressure, kPa; the curves are at the first rise.
+        forces: Contact forces of the central plate at these rises, N.
         by_radius: Central balls over their radius, mm; ``edges_by_radius``: edges of bars across the pole.
         by_offset: The ball of ``ball_radius`` over its offset, mm; ``edges_by_offset``: the edge of that radius.
         by_tilt: A leaning plate over its tilt, degrees.
         ball_radius: Radius of that ball, mm.
-        rows: The table.
-        standard_uncertainties: Addition of an unknown place of contact to the logarithm of the sensitivity, by driving
-            pressure.
-        free_offset: Distance of a plate from the axis without effect, mm.
+        rows: Rows of the table, one for each contact.
+        standard_uncertainties: Standard uncertainty of the logarithm of the force read while object and place of
+            contact are unknown, by driving pressure.
+        free_offset: Greatest offset of a plate from the axis that has no effect, mm.
     """
 
     driving_pressures_kPa: tuple[float, ...]

@@ -41,14 +41,14 @@ _HINTS = {
         "resins": "take another connector.material or print.connector_profile",
     },
 }
-"""Remedies in the design for each kind of finding, by body; a ring and a plug are designed as the connector is."""
+"""Remedies in the design by body and rule; a ring and a plug take those of the connector."""
 
 _RING_HINTS = {
     **_HINTS["connector"],
     "walls": "raise cast_ring.width_mm or cast_ring.thickness_mm, or lower cast_ring.hole_count",
     "holes": "drill after printing, or raise cast_ring.hole_diameter_mm",
 }
-"""Hints for the ring that a flange is cast around."""
+"""Remedies in the design by rule for the ring that a flange is cast around."""
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:
@@ -86,7 +86,7 @@ def _hints(body: str, layout: Layout) -> dict[str, str]:
 
 
 def glued_seat(scene: ResolvedDesign) -> GluedSeat | None:
-    """The glue of the flange with the surfaces that it joins; None without one, or where the design leaves it open."""
+    """Glue of the flange with the surfaces that it joins; None without glue, or if the choice is open."""
     name, surfaces = glue_of(scene), glue_surfaces(scene)
     return None if name is None or surfaces is None else GluedSeat(name, *surfaces)
 
@@ -101,7 +101,7 @@ def made_of(assembly: Assembly) -> PrintSubject:
 
 
 def wetted(assembly: Assembly) -> tuple[WettedSurface, ...]:
-    """The parts of a mould that a cast membrane cures against, and the ring in its flange; none of a printed one."""
+    """The surfaces that a cast membrane cures against: parts of the mould, and the ring; empty for a printed one."""
     mould = assembly.mould
     if mould is None:
         return ()
@@ -143,16 +143,15 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
 
 
 _PORT, _NAMED = "another connector.port", 2
-"""Words for a port that ends a finding, and number of ports that are named in their place."""
+"""Words of a remedy that proposes another port, and number of ports that are named in their place."""
 
 _OF_PORTS = ("walls", "pins", "holes", "channels")
-"""Rules on the connector that another port may end."""
+"""Rules whose findings on the connector another port may resolve."""
 
 
 def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
-    """Findings on the connector with ports that end them named in their remedies: each was drawn and measured.
-
-    Ports that take the design's tube come first; where the design names a tube, the others are left out."""
+    """Findings whose remedies name ports, where some resolve them: each was drawn and checked. Ports that take the
+    design's tube come first; where the design names a tube, only these are named."""
     broken = {one.rule for one in findings if _names_port(one)}
     if not broken:
         return findings
@@ -178,7 +177,7 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
 
 
 def _shipped(kind: str) -> Iterator[tuple[str, Any]]:
-    """Parts of the package alone: a build has the same bytes whatever a user's folder holds."""
+    """Name and content of every shipped part of a kind; without a user's parts, which must not change a build."""
     for path in sorted((PACKAGE / KINDS[kind].folder).glob("*.toml")):
         yield path.stem, KINDS[kind].validate(read_toml(path), str(path))
 
@@ -193,7 +192,7 @@ def _names_port(finding: Finding) -> bool:
 
 
 def _accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:
-    """A warning whose rule has a reason as a note with it; any other finding as it is."""
+    """A warning on a rule that has a reason, turned into a note with that reason; any other finding unchanged."""
     reason = reasons.get(finding.rule)
     if reason is None or finding.severity != "warning":
         return finding

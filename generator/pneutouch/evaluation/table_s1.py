@@ -25,11 +25,11 @@ PRESSURES = (0.0, 22.0)
 SHIPPED = Path(__file__).with_name("table_s1.json")
 
 NEAR_WALL, NEAR_DEAD_VOLUME = (0.10, 0.25), 0.2
-"""Wall ratios, and the share of the cavity taken by dead volume, that still count as near the paper's sensor."""
+"""Least and greatest wall ratio, and greatest dead volume over the cavity's, that count as near the paper's sensor."""
 
 
 def measured(material: Material) -> tuple[float, float] | None:
-    """The sensitivities of Table S1 for a resin, kPa/N, or None."""
+    """The sensitivities of Table S1 for a resin, kPa/N, at `PRESSURES`; None if the paper did not measure it."""
     published = material.measured
     if published is None:
         return None
@@ -37,13 +37,13 @@ def measured(material: Material) -> tuple[float, float] | None:
 
 
 def published_sensitivities(sensor: Sensor, material: Material) -> dict[float, float]:
-    """Sensitivities of Table S1, kPa/N, by driving pressure, kPa, if the sensor is the paper's; else empty."""
+    """Sensitivities of Table S1, kPa/N, by driving pressure, kPa; empty if the sensor is not one that was measured."""
     values = measured(material)
     return dict(zip(PRESSURES, values, strict=True)) if values and is_paper_sensor(sensor) else {}
 
 
 def compute_errors(material: Material, model: str, closure: str) -> list[float | None]:
-    """Relative errors at the pressures of Table S1; None if the model gives no figure."""
+    """Relative errors of a model in sensitivity at `PRESSURES`; None where the model gives no figure."""
     truth = measured(material)
     assert truth is not None
     return list(_errors(material_sensor(material), truth, model, closure))
@@ -56,8 +56,8 @@ def _errors(sensor: Sensor, truth: tuple[float, float], model: str, closure: str
 
 
 def fingerprint(material: Material) -> str:
-    """Fingerprint of the inputs of the solid's error on the paper's sensor: the resin's mechanics and its
-    measurements."""
+    """Digest of the inputs of the solid's error on the paper's sensor: mechanical properties and measurements of the
+    resin."""
     sensor = material_sensor(material)
     facts = [
         sensor.wall.shear_modulus,
@@ -70,7 +70,7 @@ def fingerprint(material: Material) -> str:
 
 
 def is_near_paper(sensor: Sensor) -> bool:
-    """True if a sensor is near enough to the paper's that its error applies."""
+    """True if a sensor is so near the paper's that a model's error on the paper's sensor applies to it."""
     low, high = NEAR_WALL
     dome, least = sensor.dome, NEAR_DEAD_VOLUME * sensor.dome.shape.cavity_volume
     close = low <= dome.wall_thickness / dome.inner_radius <= high and no_hemisphere(dome.shape) is None

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.source import UncertaintySource
 
 GAP, STEEP_GAP = 0.2, 0.45
-"""Distance of the derivatives d ln sensitivity / d ln modulus and wall of the even wall from those of the graded solid,
+"""Greatest distance of d ln sensitivity / d ln modulus, and by wall, of the even wall from those of the graded solid,
 for the paper's sensor: with one end 6 times as stiff as the other, either one, and with the rim 13 times as stiff as
 the pole (`tests/evaluation/test_graded_uncertainty.py`)."""
 
@@ -55,7 +55,7 @@ _LAW_NOTE = (
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
-    """Notes on the uncertainty of this sensor."""
+    """Notes on the uncertainty of a graded wall and of a fitted law; empty for other walls."""
     graded = () if sensor.wall.grade is None else (_NOTE,)
     return (*graded, _LAW_NOTE) if sensor.wall.fitted else graded
 
@@ -63,7 +63,7 @@ def notes_on(sensor: Sensor) -> tuple[str, ...]:
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
 
 DIGITS = 6
-"""Significant digits of an uncertainty: more than it has, fewer than differ between processors."""
+"""Significant digits of an uncertainty: more than are meaningful, fewer than differ between processors."""
 
 _NOTHING = 1e-9
 """Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
@@ -76,7 +76,7 @@ _TREND = (
 
 @dataclass(frozen=True)
 class SensorBudget:
-    """Batch of a sensor at n driving pressures for the atlas, its budget, and its contact if that is another."""
+    """A sensor at n driving pressures as a batch, and its budget; ``contact`` None: a plate without friction."""
 
     batch: SensorBatch
     budget: Budget
@@ -106,14 +106,14 @@ def _soft_note(sensor: Sensor) -> str:
 
 
 class SensorSpread(NamedTuple):
-    """Batch of a sensor at n driving pressures for the atlas, its sources, and its contact if that is another."""
+    """A sensor at n driving pressures as a batch, and its sources; ``contact`` None: a plate without friction."""
 
     batch: SensorBatch
     sources: list[UncertaintySource]
     contact: ContactModel | None
 
     def combined(self) -> SensorBudget:
-        """The budget of these sources."""
+        """The budget that these sources give."""
         from pneutouch.mechanics.uncertainty.propagate import propagate
 
         return SensorBudget(self.batch, propagate(*self), self.contact)
@@ -136,7 +136,7 @@ def spread(
 
     ``materials`` are all known resins: the model's error is taken from the measured ones. ``model`` gives the numerical
     error. ``states`` are those of the solid under another contact, at pressures already solved. ``anywhere`` counts an
-    unknown place of contact, where the design's own contact is the central plate; ``aged`` are the years of `sources`.
+    unknown place of contact, if the design's own is the central plate; ``aged`` is the age that counts, years.
     """
     from pneutouch.mechanics.atlas.coverage import under_plate
     from pneutouch.mechanics.atlas.press import batch_of
@@ -245,7 +245,7 @@ def uncertainties(
 
 
 def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
-    """Values of the budget's figures by key, from the model, without the figures that it does not compute."""
+    """Values of the budget's figures by key, as the model gives them; figures that it does not give are left out."""
     peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
     if figures is not None:
         of_contact = {
@@ -262,7 +262,7 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
 
 
 def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[str, FigureRecord]) -> SampleRecord:
-    """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
+    """The 95.45 % intervals of the samples, scaled to the model's figures, and the share without a figure."""
     from pneutouch.mechanics.atlas.figures import FIGURES
     from pneutouch.mechanics.uncertainty.document import monte_carlo
 
