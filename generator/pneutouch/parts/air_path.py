@@ -1,6 +1,6 @@
 """The air's path from the base plane to the end of the tube, as round ducts in series with volumes connected to them.
 
-Its volume is `internal_volume` plus the tube, from which the dead volume of the sensor is computed.
+Its volume is `internal_volume` plus the tube; the dead volume as drawn follows from it. Also the volume of glue gaps.
 """
 
 import math
@@ -20,13 +20,13 @@ def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def side_volume(layout: Layout, across: float) -> float:
-    """Volume in mm3 of bore and port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
+    """Volume in mm3 of a side port's bore and hollow, mouth to wall of a vertical hole of radius ``across`` mm."""
     port = layout.port
     return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
 
 
 def channel_volume(layout: Layout) -> float:
-    """Volume in mm3 of the channel and the empty hollow of the port; a side port on an opening has no channel."""
+    """Volume in mm3 of channel, side bore and port's hollow, without a fitting; a plug's opening replaces a channel."""
     port, radius = layout.port, layout.channel_radius
     if layout.port_axis is None:
         meeting = layout.under - port.hollow[-1][1]
@@ -72,7 +72,7 @@ def _inside_flange(layout: Layout) -> float:
 
 
 def _draft(radius: float, draft: float, layout: Layout) -> float:
-    """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` over its height."""
+    """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` mm over its height."""
     return math.pi * layout.flange_thickness * abs(draft) * (radius + draft / 3)
 
 
@@ -114,7 +114,7 @@ def air_path(scene: ResolvedDesign, layout: Layout) -> tuple[AirPiece, ...]:
 
 
 def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
-    """Gap of a seat as a cylinder with its volume, as long as wide: only the volume is used."""
+    """Gap of a seat, if it has one, as a cylinder with its volume, as long as wide: only the volume is used."""
     volume = gap_volume(scene, layout)
     if volume < _NOTHING:
         return []
@@ -166,7 +166,7 @@ def crossing(radius: float, bore: float) -> float:
     """Volume in mm3 of a round bore between axis and wall of a cylinder that it crosses centrally at right angles.
 
     Integral of sqrt(R^2 - y^2) over the disc of radius ``bore`` <= R, by Gauss-Chebyshev quadrature of the second kind
-    with 64 nodes, accurate to 1e-12 up to bore = 0.95 R.
+    with 64 nodes, accurate to 1e-12 up to bore = 0.95 R. Raises ValueError for a wider bore.
     """
     if bore > radius:
         raise ValueError("the bore must not be wider than the cylinder it crosses")

@@ -55,7 +55,7 @@ class Assembly:
 
     @cached_property
     def mould(self) -> MouldAssembly | None:
-        """The mould of a cast membrane, None of a printed one. Raises InputError if a detail has no space."""
+        """The mould of a cast membrane; None if it is printed. Raises InputError if a detail has no space."""
         if self.scene.mould_printer is None:
             return None
         from pneutouch.parts.mould import mould_of
@@ -63,23 +63,23 @@ class Assembly:
         return mould_of(self.scene, self.layout)
 
     def solid(self, name: str) -> Solid:
-        """The solid of a given name: membrane, connector, ring or plug."""
+        """The solid of this name: membrane, connector, ring or plug."""
         return next(solid for solid in self.solids if solid.name == name)
 
     def machine(self, name: str) -> tuple[Printer, Mode]:
-        """Printer of a body, and its mode."""
+        """Printer of the body of this name, and its mode."""
         scene = self.scene
         if name == "membrane":
             return scene.printer, scene.membrane_mode
         return scene.connector_printer, scene.connector_mode
 
     def job(self, name: str) -> str:
-        """Name of a body's print job: bodies of one job are printed together."""
+        """Name of the print job of the body of this name; bodies of one job are printed together."""
         grown = isinstance(self.scene.seat, OnePiece) and name in ("membrane", "connector")
         return "one piece" if grown else name
 
     def stands_up(self, name: str) -> bool:
-        """True if a body is printed in its orientation in the design frame, False if turned over."""
+        """True if the body of this name is printed as it stands in the design frame, False if turned over."""
         down = self.scene.design.print.orientation == "dome-down"
         return not (down and self.job(name) == self.job("membrane"))
 
@@ -138,9 +138,8 @@ class Assembly:
 
     @property
     def dead_volume_note(self) -> str:
-        """Note on a stated dead volume of zero behind a tube, as in the paper's theory; else empty.
-
-        A calibrated sensor has the volume that was measured."""
+        """Note on a stated dead volume of zero behind a tube, as in the paper's theory; else empty, as for a calibrated
+        sensor, whose dead volume was measured."""
         pneumatics, calibrated = self.scene.design.pneumatics, self.scene.calibration is not None
         if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0 or calibrated:
             return ""

@@ -51,12 +51,12 @@ class RingSize:
 
     @property
     def rim(self) -> float:
-        """Width of the rigid material inside the holes."""
+        """Width of the web between its inner edge and the holes."""
         return self.hole_circle - self.hole_radius - self.web_inner
 
     @property
     def bridge(self) -> float:
-        """Width of the rigid material between two holes."""
+        """Width of the web between two holes."""
         return 2 * self.hole_circle * math.sin(math.pi / self.hole_count) - 2 * self.hole_radius
 
     def holes(self) -> tuple[Bore, ...]:
@@ -117,7 +117,7 @@ def ring_size(scene: ResolvedDesign, seat: CastRing, flange_radius: float, flang
 
 
 def least_bridge(scene: ResolvedDesign) -> float:
-    """Least width of rigid material in mm at a hole of a ring: the wall that the printer can make."""
+    """Least width in mm of rigid material next to a hole: the wall that the connector's printer can make."""
     wall = scene.connector_printer.smallest.wall("rigid")
     return wall.recommended if wall.least is None else wall.least
 

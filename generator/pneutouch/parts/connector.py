@@ -180,7 +180,7 @@ SEAT = "seat"
 
 
 def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
-    """Path from the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
+    """Path from the plate's lower edge over its top to the inner edge of the seat at the base plane."""
     plate: TracedPath = [("plate edge", (layout.plate_radius, layout.plate_high))]
     inner, flange, high = layout.inner_radius, layout.flange_radius, layout.plate_high
     ring: TracedPath = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]
@@ -238,7 +238,7 @@ _PAST = 1.0
 
 
 def _side_boss(layout: Layout) -> list[Feature]:
-    """Outer body of the port, which begins inside the plate's edge, and its lugs."""
+    """Outer body of a side port, which begins inside the plate's edge, and its lugs."""
     port, radius = layout.port, layout.plate_radius
     inside = math.sqrt(radius**2 - port.root**2) - _PAST - radius
     faces = [("", (port.root, inside)), *((tag, point) for point, tag in reversed(_faces(layout)))]
@@ -262,7 +262,7 @@ def _side_bore(layout: Layout, across: float) -> Feature:
 
 
 def _faces(layout: Layout) -> list[tuple[tuple[float, float], str]]:
-    """Points of the outside from mouth to root, with the tag of the face that a walk from the root ends there."""
+    """Points of the port's outside from mouth to root; the tag is that of the face from the next point to this one."""
     port = layout.port
     points = [port.hollow[0], *(point for point, _ in port.outside)]
     return [(points[k], tag) for k, (_, tag) in enumerate(port.outside)] + [(points[-1], "")]

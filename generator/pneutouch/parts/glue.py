@@ -78,9 +78,9 @@ def surface_of(printer: Printer) -> GlueSurface:
 
 
 def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | None:
-    """Surfaces that glue joins at the seat, the connector's surface last; None for a seat without glue there.
+    """Surfaces that glue joins at the seat, the connector's surface last; None for a seat without glue.
 
-    A ring that a flange is cast around is made like the connector: its holes, not glue, hold the silicone.
+    Of a cast ring it is the ring, made like the connector, that is glued; its holes, not glue, hold the silicone.
     """
     if isinstance(scene.seat, CastRing):
         return surface_of(scene.connector_printer), surface_of(scene.connector_printer)
@@ -90,8 +90,8 @@ def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | No
 
 
 def glue_of(scene: ResolvedDesign) -> str | None:
-    """Name of the glue at the seat: the glue named in the design, else silicone adhesive for a cast flange, and for a
-    cast ring the gap-filling glue; None if the choice is open."""
+    """Name of the glue at the seat: that of the design, else silicone adhesive for a cast flange and epoxy, which fills
+    gaps, for a cast ring; None if the choice is open, or without glue."""
     surfaces, named = glue_surfaces(scene), scene.design.connector.glue
     if surfaces is None or named is not None:
         return named

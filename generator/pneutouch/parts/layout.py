@@ -43,8 +43,8 @@ class Layout:
 
     ``under`` is the rearmost face around the axis: ``plate_low``, or lower if the mount has a boss there.
     ``opening_radius`` is the radius of the hole that a plug closes, 0 without a plug. ``port_axis`` is the height of a
-    side port. ``flange_draft`` is the increase in radius of both sides of a cast flange from the base plane to its
-    underside. ``ring`` is the ring that the flange is cast around, None without one.
+    side port, None for a port at the rear. ``flange_draft`` is by how much both sides of a cast flange are wider at its
+    underside than at the base plane. ``ring`` is the ring that the flange is cast around, None without one.
     """
 
     shape: DomeShape
@@ -86,8 +86,7 @@ class Layout:
 
     @property
     def held_radius(self) -> float:
-        """Outer radius of the part that the seat holds: the flange, or the collar of the ring that the flange is cast
-        around."""
+        """Outer radius of the part that the seat holds: the flange, or the collar of the ring inside a cast flange."""
         return self.flange_radius if self.ring is None else self.ring.collar_radius
 
     @property
@@ -112,7 +111,7 @@ class Layout:
 
     @property
     def channel_low(self) -> float:
-        """Height of the bottom of the channel that the passage of a side port opens into."""
+        """Height of the bottom of the channel that the passage of a side port opens into; for a side port only."""
         assert self.port_axis is not None
         return self.port_axis - self.port.passage - 0.5
 
@@ -180,7 +179,7 @@ def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
-    """Outer radius of the rigid ring around the flange; a clamping ring has its screw heads on a flat face."""
+    """Outer radius of the rigid ring around the flange; that of a clamping ring leaves a flat face for screw heads."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         least = scene.connector_printer.smallest.wall("rigid").recommended
@@ -192,7 +191,7 @@ def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
 
 
 def _bolt_circle(scene: ResolvedDesign, ring: float) -> float:
-    """Radius of the circle of mounting holes, 0 without one; a whole diameter in mm, so that it can be drilled."""
+    """Radius of the circle of mounting holes, 0 without one; in a bolt circle half of a whole diameter in mm."""
     mount = scene.mount
     if isinstance(mount, RobotFlange):
         return 0.5 * mount.pitch_diameter

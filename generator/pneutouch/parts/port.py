@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pneutouch.body import Prism
 
 CHANNEL = "channel"
-"""Tag of the faces that touch the air in the connector."""
+"""Tag of the connector's faces that touch the gas."""
 
 TIP_WALL = 0.3
 """Wall thickness in mm left at the tip of a barb: a blunt edge that prints and does not cut the tube."""

@@ -149,11 +149,11 @@ class TableError:
     nominal_N: float
     """Difference under the conditions of the tare."""
     nominal_percent: float
-    """That difference over full scale."""
+    """The same difference over full scale."""
     other_conditions_N: float
     """Difference at other temperatures of the gas and other ambient pressures."""
     other_conditions_percent: float
-    """That difference over full scale."""
+    """The same difference over full scale."""
     states: int
     """Number of states compared under the conditions of the tare."""
 

@@ -16,7 +16,7 @@ from pneutouch.selection.problem import SelectionProblem
 
 
 def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -> Array:
-    """Rated pressures of candidates, (n,), MPa; resin (n,) numbers, radius and wall (n,) mm.
+    """Rated pressures (n,) of candidates, MPa, by number of the resin in the problem, radius and wall, mm, (n,) each.
 
     Without a known spread the limits count as designed.
     """
@@ -45,7 +45,7 @@ class CandidatePool(NamedTuple):
     response: AtlasResponse
 
     def take(self, rows: Index | Flags) -> CandidatePool:
-        """Some of the candidates."""
+        """The candidates in these rows."""
         return CandidatePool(
             self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows)
         )
@@ -57,12 +57,12 @@ class CandidatePool(NamedTuple):
 
     @property
     def force(self) -> Array:
-        """Force that the range reaches: at its end, or where the slope has halved before."""
+        """Force (n,) that the range reaches, N: at its end, or where the slope has halved before."""
         return self.response.lines.reach
 
 
 def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
-    """Candidates with their responses from the atlas, times the factors of the problem where there are any."""
+    """Candidates with their responses from the atlas, corrected by the factors of the problem if it has any."""
     batch = problem.batch(resin, radius, wall, pressure)
     response = respond(batch, problem.steps, problem.atlas)
     if problem.factors is not None:
@@ -128,7 +128,7 @@ def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
 
 
 def _connector(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
-    """Margins of the connector, drawn once for each size of the dome."""
+    """Margins of the connector, which is drawn once for each size of the dome; empty if the problem has none."""
     if problem.connector is None:
         return {}
     sizes, number = np.unique(np.stack([pool.radius, pool.wall]), axis=1, return_inverse=True)
@@ -141,7 +141,7 @@ def _connector(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Arra
 
 
 def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Pressure rise at the required force, or at the end of a shorter range; none without a requirement."""
+    """Pressure rise (n,) at the required force, or at the end of a shorter range; zero without a required force."""
     force, rise = pool.response.force, pool.response.rise
     if problem.force_range is None:
         return np.zeros(force.shape[0])
@@ -169,7 +169,7 @@ class CandidateGrid:
 
 
 def search(problem: SelectionProblem) -> CandidatePool | None:
-    """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target.
+    """Every candidate evaluated: the scan, and the points between its points where the sensitivity is the target.
 
     None if no size is inside the bounds.
     """
@@ -223,10 +223,10 @@ _ENOUGH = 0.02
 
 
 def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """Improved candidates of a scan, by steps to the best neighbour: they break the limits less, or meet them.
+    """Candidates of a scan improved by steps to the best neighbour: they meet the limits, or break them less.
 
     A scan has no point in every corner of what is possible, such as the least wall at the greatest diameter. The steps
-    start at the best of each resin, which differ, and are halved where no neighbour is better.
+    start at several candidates of each resin, and are halved where no neighbour is better.
     """
     rows = _best_of_each(problem, pool)
     if not rows.size:
@@ -256,7 +256,7 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
 
 
 def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """The nine sizes in hundredths of a millimetre around each candidate."""
+    """Candidates, and with each the nine sizes around it in hundredths of a millimetre."""
     by = 0.01 * np.arange(-1.0, 2.0)
     radius, wall = np.round(pool.radius, 2)[:, None, None] + by, np.round(pool.wall, 2)[:, None, None] + by[:, None]
     if problem.inner_radius is not None:
@@ -268,7 +268,7 @@ def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePoo
 
 
 def _moves(problem: SelectionProblem) -> Array:
-    """No step and those to all neighbours in radius, wall and pressure, as far as these are free, (m, 3)."""
+    """Steps (m, 3) to all neighbours in radius, wall and pressure, as far as these are free, after none at all."""
     fixed = (problem.inner_radius, problem.wall_thickness, problem.driving_pressure)
     sides = [(0.0,) if value is not None else (0.0, -1.0, 1.0) for value in fixed]
     return np.array(np.meshgrid(*sides, indexing="ij")).reshape(3, -1).T
@@ -304,7 +304,7 @@ def _ratios(problem: SelectionProblem, count: int) -> Array:
 
 
 def _pressures(problem: SelectionProblem, resins: Array, ratio: Array, radius: Array) -> Array:
-    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of each rated pressure."""
+    """Driving pressures with axes resin, pressure, wall, radius: the one given, or shares of each rated pressure."""
     if problem.driving_pressure is not None:
         return np.full((resins.size, 1, *ratio.shape), problem.driving_pressure)
     alone = problem.inner_radius is not None and problem.wall_thickness is not None

@@ -42,20 +42,20 @@ MARGIN_WEIGHT = 0.1
 """Weight of the least margin in the cost."""
 
 Uncertainty = Callable[[Sequence[tuple[CandidateResin, SensorBatch]]], list[Array]]
-"""Relative expanded uncertainties of the sensitivity of the sensors of each resin, (n,) each."""
+"""Function that gives the relative expanded uncertainties (n,) of the sensitivity for the sensors of each resin."""
 
 Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]
-"""Function that improves candidates at round sizes in their free parameters, in a problem of their own resins."""
+"""Function that adjusts the resins of candidates at round sizes; it returns them in a problem of these resins."""
 
 
 @dataclass(frozen=True)
 class Candidate:
     """One candidate with all that it is judged by.
 
-    margins: margins by name. binding: the smallest margin except the sensitivity's. expanded: relative expanded
-    uncertainty of the sensitivity. span: sensitivities at zero and at the rated pressure. rated: rated pressure, MPa.
-    cost: key of the ranking, less is better. place: relative standard uncertainty of the sensitivity by an unknown
-    place of contact, where the target counts it. contact: figures by the solid, for a contact outside the atlas.
+    margins: margins by name. expanded: relative expanded uncertainty of the sensitivity. span: sensitivities at zero
+    and at the rated pressure. rated: rated pressure, MPa. cost: key of the ranking, less is better. place: relative
+    standard uncertainty of the sensitivity by an unknown place of contact, None if it is not counted or not known.
+    contact: figures by the solid, for a contact outside the atlas; else None.
     """
 
     resin: CandidateResin
@@ -81,7 +81,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class DroppedRequirement:
-    """A requirement to drop, and the design without it that comes nearest to it."""
+    """A requirement without which there is a design, and the design that then comes nearest to it."""
 
     requirement: str
     best: Candidate
@@ -90,9 +90,8 @@ class DroppedRequirement:
 @dataclass(frozen=True)
 class SelectionResult:
     """Result of a selection. designs: the best of each resin first, in order of cost, then the runners-up in order of
-    cost.
-
-    Without designs: the candidate nearest to the target, and which single requirement to drop for a design."""
+    cost. candidates: number of candidates searched. Without designs: the candidate nearest to the target, None if
+    unknown, and the single requirements of which any can be dropped for a design."""
 
     designs: list[Candidate]
     nearest: Candidate | None
@@ -156,7 +155,7 @@ def searched(problem: SelectionProblem) -> CandidatePool | None:
 
 
 def refinable(problem: SelectionProblem) -> SelectionProblem:
-    """The problem with a tolerance inside which a sensitivity is met by refining a mix."""
+    """The problem with a tolerance so wide that refining a mix meets the sensitivity within it."""
     return replace(problem, tolerance=max(problem.tolerance, _REFINABLE))
 
 
@@ -169,7 +168,7 @@ def least_margin(margin_of: dict[str, Array]) -> Array:
 def shortlist(
     pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, each: int = EACH, preferred: Array | None = None
 ) -> Index:
-    """For each resin a few unlike candidates, those of the greatest margin, plus ``preferred`` (n,), first."""
+    """Rows of a few unlike candidates of each resin among ``fits``, by greatest margin plus ``preferred`` (n,)."""
     least = least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
     least = least if preferred is None else least + preferred
     chosen: list[int] = []
@@ -188,8 +187,8 @@ def shortlist(
 def _least_moved(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], fits: Flags
 ) -> Array | None:
-    """Cost of an unknown place of contact to candidates, (n,), in margins as the ranking has them; None if the target
-    does not count it. Candidates that the table does not cover come last."""
+    """Addition (n,) to the margins of candidates, never positive, for an unknown place of contact, as the ranking
+    weighs it; None if the target does not count it. Candidates that the table does not cover come last."""
     if not problem.anywhere:
         return None
     known = np.full(fits.shape, np.nan)
@@ -198,7 +197,7 @@ def _least_moved(
 
 
 def places(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Relative standard uncertainty of the sensitivity by an unknown place of contact, (n,); NaN if not known."""
+    """Relative standard uncertainty (n,) of the sensitivity by an unknown place of contact; NaN if not known."""
     batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     return place_uncertainties(batch, pool.response)
 
@@ -255,7 +254,7 @@ def _judged(
 
 
 def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Array], least: Array) -> Array:
-    """Key of the ranking, (n,): from uncertainties, sensitivities at zero and at rated pressure, least margins."""
+    """Key of the ranking (n,), less is better, by uncertainties, sensitivities at zero and rated pressure, margins."""
     with np.errstate(invalid="ignore", divide="ignore"):
         moves = np.abs(np.log(span[1] / span[0]))
     return np.asarray(
@@ -284,7 +283,7 @@ def ranked(choices: list[Candidate]) -> list[Candidate]:
 
 
 _NEAREST = 30
-"""Number of candidates from which the nearest at round sizes is taken: rounding can move one out of the known."""
+"""Number of candidates that are rounded to find the nearest: rounding can move one out of the atlas."""
 
 
 def _least(margin_of: dict[str, Array]) -> Array:
@@ -296,7 +295,7 @@ def _least(margin_of: dict[str, Array]) -> Array:
 def _impossible(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
 ) -> SelectionResult:
-    """The candidate that breaks the least at round sizes, and each requirement without which there is a design."""
+    """Result with the candidate that breaks the least at round sizes, and the requirements to drop for a design."""
     margin_of = margins(problem, pool)
 
     def close(row: int) -> Candidate:

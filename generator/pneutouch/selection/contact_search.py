@@ -35,21 +35,21 @@ from pneutouch.selection.choose import (
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _SETTLED = 0.25
-"""Share of the tolerance within which a sensitivity counts as settled."""
+"""Share of the tolerance within which the sensitivity of a settled candidate lies."""
 
 UNSOLVED = -1.0e9
 """Least margin of a candidate for which the solid gives no figures."""
 
 
 class SolvedStates(NamedTuple):
-    """States of the solid at driving pressures, or why there are none."""
+    """States of the solid at driving pressures; or none, and the ``problem`` why."""
 
     states: tuple[SensorState, ...]
     problem: str = ""
 
 
 SolveCandidate = Callable[[CandidateResin, CandidatePool, list[float]], SolvedStates]
-"""Function that solves a candidate (one row) by the solid under its contact, at rising driving pressures in MPa."""
+"""Function that solves a candidate (pool of one row) by the solid under its contact, at rising pressures in MPa."""
 
 ContactUncertainty = Callable[[CandidateResin, CandidatePool, SensorState], float]
 """Relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact, from its solved state;
@@ -62,7 +62,7 @@ class ContactTrial:
 
     problem: the problem of its resin only, without factors. pool: one row, with the solid's response, or the atlas's if
     there is none for the reason ``why``. atlas: the atlas's response. margins: margins by the solid; empty without
-    figures. state: state of the solid, if it has figures.
+    figures. state: state of the solid; None without figures.
     """
 
     resin: CandidateResin
@@ -75,12 +75,12 @@ class ContactTrial:
 
     @property
     def worst(self) -> float:
-        """The least of all margins."""
+        """The least of all margins; `UNSOLVED` without figures."""
         return min(self.margins.values(), default=UNSOLVED)
 
     @property
     def place(self) -> Array:
-        """Row of the candidate in `places`, (1, 4)."""
+        """Place of the candidate as `places` gives it, (1, 4)."""
         return places(self._batch(), self.atlas)
 
     @property
@@ -115,7 +115,7 @@ class ContactTrial:
         return self.problem.batch(self.pool.resin, self.pool.radius, self.pool.wall, self.pool.pressure)
 
     def _span(self, solve: SolveCandidate, highest: float) -> tuple[float, float]:
-        """Sensitivities at zero and at the rated pressure; NaN if the solid has none."""
+        """Sensitivities at zero and at the rated pressure ``highest`` (MPa); NaN if the solid has none."""
         pressures = [0.0, highest]
         driven = float(self.pool.pressure[0])
         solved = {driven: self.pool.figures.sensitivity}
@@ -130,7 +130,7 @@ class ContactTrial:
 
 
 def tried(problem: SelectionProblem, pool: CandidatePool, solve: SolveCandidate) -> ContactTrial:
-    """Solve a candidate (one row) by the solid."""
+    """Trial of a candidate (one row), solved by the solid."""
     resin = problem.resins[int(pool.resin[0])]
     alone = replace(problem, resins=(resin,), factors=None)
     plain = evaluated(alone, np.zeros(1), pool.radius, pool.wall, pool.pressure)
@@ -148,7 +148,7 @@ def tried(problem: SelectionProblem, pool: CandidatePool, solve: SolveCandidate)
 
 
 ROUNDS = 8
-"""Greatest number of searches."""
+"""Greatest number of searches in a run."""
 _ANYWHERE = 2
 """Number of searches that take the best anywhere; the later ones stay near the solved candidates."""
 _FEW = 2
@@ -174,9 +174,9 @@ class _Group:
 
 @dataclass(frozen=True)
 class ContactSelection:
-    """An answer whose figures are the solid's. unsettled: resins and why the search did not come to an end.
+    """An answer whose figures are the solid's. unsettled: reason why the search did not come to an end, by resin.
 
-    rounds: searches made. solves: candidates that the solid answered in them.
+    rounds: searches made. solves: candidates that the solid was run for.
     """
 
     result: SelectionResult
@@ -213,7 +213,7 @@ def choose_by_solid(
 
 
 class _Run:
-    """The rounds of one search."""
+    """The state of one search: factors, groups and solved candidates, from round to round."""
 
     def __init__(self, problem: SelectionProblem, solve: SolveCandidate, refine: Refine | None) -> None:
         self.problem, self.solve, self.refine = problem, solve, refine
@@ -296,7 +296,7 @@ class _Run:
         return rows[np.unique(nearest)]
 
     def trial(self, problem: SelectionProblem, pool: CandidatePool) -> ContactTrial:
-        """Solve a candidate, once; its figures correct the next search."""
+        """Trial of a candidate, solved once only; its figures correct the next search."""
         resin = problem.resins[int(pool.resin[0])]
         key = (resin.name, resin.shear_modulus, float(pool.radius[0]), float(pool.wall[0]), float(pool.pressure[0]))
         if key not in self._known:
@@ -305,7 +305,7 @@ class _Run:
         return self._known[key]
 
     def unsettled(self) -> dict[str, str]:
-        """Resins without a design, with the reason: the last candidate not solved, or the rounds not settled."""
+        """Reason why a resin has no design, by resin: the last candidate not solved, or the rounds not settled."""
         return {name: why for name, group in self.groups.items() if (why := self._why(group)) is not None}
 
     def _why(self, group: _Group) -> str | None:
@@ -326,7 +326,7 @@ class _Run:
 
 
 def _best(trials: list[ContactTrial], each: int) -> list[ContactTrial]:
-    """The few answers of one group that are not nearly the same, the greatest margin first."""
+    """The answers of one group, ``each`` at most and not nearly the same, the greatest margin first."""
     good = [trial for trial in trials if trial.worst >= 0.0]
     if not good:
         return []

@@ -1,4 +1,4 @@
-"""The trade-off: for each resin the greatest force range that goes with each sensitivity, at one driving pressure.
+"""The trade-off: for each resin the greatest force range that is possible at each sensitivity, at one driving pressure.
 
 The trade-off under a contact that the atlas does not cover: the atlas's fronts corrected by the solid along them.
 
@@ -44,11 +44,11 @@ class TradeOffFront(NamedTuple):
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
     """Fronts of all resins at the problem's driving pressure (zero if none is given), inside every limit.
 
-    No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius, on a
-    plate without edge, where the figures are smooth; in it, interpolated for each of many levels of sensitivity, the
-    place of most force that is at least so sensitive and stays on the plate; then closer looks around the best
-    candidates. Ends of ranges jump with the dimensions, so that no slope could be followed, and each candidate of a
-    front is evaluated."""
+    No point of a front has both more sensitivity and more force than another. First a scan over wall ratio and radius
+    on a plate without edge, where the figures are smooth. Interpolated in it, for many levels of sensitivity, the place
+    of most force that is at least so sensitive and stays on the plate. Then closer looks around the best. Ends of
+    ranges jump with the dimensions, so that no slope could be followed; each candidate of a front is evaluated.
+    """
     u, v = np.meshgrid(np.linspace(0.0, 1.0, _RATIOS), np.linspace(0.0, 1.0, _RADII), indexing="ij")
     scan = np.stack([u.ravel(), v.ravel()])
     places, pools, near = [], [], []
@@ -76,7 +76,7 @@ def _plate_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
 
 
 def _between(problem: SelectionProblem, pool: CandidatePool, on_plate: Array) -> Array:
-    """Places of most force at each level, (2, n), by linear interpolation in the scan of one resin."""
+    """Places (2, n) of most force at each level of sensitivity, by linear interpolation in the scan of one resin."""
     with np.errstate(divide="ignore", invalid="ignore"):
         logs, forces = np.log(pool.response.lines.sensitivity), np.log(pool.force)
     logs, forces, limits, plate = (
@@ -90,7 +90,7 @@ def _between(problem: SelectionProblem, pool: CandidatePool, on_plate: Array) ->
 
 
 def _finer(values: Array) -> Array:
-    """Values on a grid interpolated in its cells; NaN if a corner is, but not on the grid's own points."""
+    """Values on a grid, interpolated in its cells; NaN in a cell with a NaN corner, except on the grid's points."""
     for finer in _FINER:
         x = np.linspace(0.0, len(values) - 1, (len(values) - 1) * finer + 1)
         at = np.minimum(x.astype(np.intp), len(values) - 2)
@@ -102,7 +102,7 @@ def _finer(values: Array) -> Array:
 
 
 def _near(problem: SelectionProblem, places: Array, pool: CandidatePool, step: float) -> Array:
-    """Places around the best candidates of one resin, (2, n), each once."""
+    """Places (2, n) around the best candidates of one resin, each once; ``step`` in steps of the scan."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     logs = np.log(pool.response.lines.sensitivity[good])
     rows, levels = _best(logs, np.log(pool.force[good]))
@@ -120,7 +120,7 @@ def _near(problem: SelectionProblem, places: Array, pool: CandidatePool, step: f
 
 
 def _pools(problem: SelectionProblem, places: list[Array]) -> list[CandidatePool]:
-    """Each resin's candidates at its places from 0 to 1 of wall ratio and radius between their bounds, (2, n).
+    """Candidates of each resin at its ``places`` (2, n): shares, 0 to 1, of the spans of wall ratio and radius.
 
     All resins are pressed in one batch: a seventh of the calls of the atlas.
     """
@@ -137,20 +137,20 @@ def _pools(problem: SelectionProblem, places: list[Array]) -> list[CandidatePool
 
 
 def _ratio(problem: SelectionProblem, along: Array) -> Array:
-    """Wall ratios at places from 0 to 1 of the atlas."""
+    """Wall ratios (n,) at shares (n,), 0 to 1, of the atlas's span."""
     box = problem.recipe
     return np.asarray(box.thinnest * (box.thickest / box.thinnest) ** along)
 
 
 def _bounds(problem: SelectionProblem, ratio: Array) -> tuple[Array, Array]:
-    """Least and greatest radius for wall ratios, mm."""
+    """Least and greatest radius (n,) for wall ratios (n,), mm."""
     low, high = problem.radii(ratio)
     # Where the size limit is smaller than the least wall needs, the candidate breaks a limit and is dropped as such.
     return low, np.maximum(high, low)
 
 
 def _least_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Least margin to a limit, up to the rounding of the bound's own computation."""
+    """Least margin (n,) to a limit, requirements left out, with an allowance for the rounding of the bounds."""
     rest = [margin for name, margin in margins(problem, pool).items() if name not in _REQUIREMENTS]
     return np.asarray(np.min(rest, axis=0) + 1e-9)
 
@@ -179,7 +179,7 @@ def _unbeaten(points: Array) -> Index:
 
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
-    """Front of the candidates that meet every limit, without those that another beats in both figures."""
+    """Front of the candidates of resin ``number`` that meet every limit and that no other beats in both figures."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     sensitivity = pool.response.lines.sensitivity
     rows = good[_unbeaten(np.stack([sensitivity, pool.force])[:, good])][::-1]
@@ -197,7 +197,7 @@ _NEAR = 0.01
 
 
 class ContactFronts(NamedTuple):
-    """Fronts, and errors of the fronts drawn before where the solid was solved next, from the second round on.
+    """Fronts, and errors of the fronts of the round before at the places that the solid solves next, from round two on.
 
     For each place the larger relative difference of sensitivity and force counts: the median and the greatest of all,
     NaN if there is none. ``presses`` is the number of places solved.
@@ -210,7 +210,7 @@ class ContactFronts(NamedTuple):
 
 
 def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFronts:
-    """`front` times the solid's factors for its contact; a place that the solid cannot answer corrects nothing."""
+    """`front` corrected by the solid for its contact; a place that the solid cannot answer corrects nothing."""
     factors, fronts = ContactFactors.none(), _fronts(problem, ContactFactors.none())
     open_, errors, presses = list(range(len(fronts))), [], 0
     for count, shares in enumerate(_SHARES):
@@ -242,7 +242,7 @@ def _fronts(problem: SelectionProblem, factors: ContactFactors) -> list[TradeOff
 
 
 def _spread(one: TradeOffFront, shares: tuple[float, ...]) -> Index:
-    """Rows at shares of the length of a front, each once; none of an empty one."""
+    """Rows at these shares of a front's length, each once; empty for an empty front."""
     if one.force.size == 0:
         return np.zeros(0, dtype=np.intp)
     steps = np.hypot(np.diff(np.log(one.sensitivity)), np.diff(np.log(one.force)))
@@ -251,7 +251,7 @@ def _spread(one: TradeOffFront, shares: tuple[float, ...]) -> Index:
 
 
 def place(problem: SelectionProblem, number: int, one: TradeOffFront, row: int) -> CandidatePool:
-    """A place of a front as a candidate, by the atlas only."""
+    """The point in ``row`` of a front as a candidate, by the atlas only; ``number`` is that of its resin."""
     pressure = np.array([problem.driving_pressure or 0.0])
     radius, wall = one.radius[[row]], one.wall[[row]]
     return evaluated(replace(problem, factors=None), np.array([float(number)]), radius, wall, pressure)

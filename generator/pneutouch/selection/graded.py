@@ -78,7 +78,7 @@ class GradeTrial:
 
 @dataclass(frozen=True)
 class GradeSearch:
-    """The best trial, True if it meets the target, and all trials in order, each solved once by the solid."""
+    """The best trial; ``met``: True if it meets the target; all trials in order, each solved once by the solid."""
 
     best: GradeTrial
     met: bool
@@ -90,7 +90,7 @@ TrialReport = Callable[[GradeTrial, int, int], None]
 
 
 def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
-    """Share of each tolerance or limit that a trial uses up: at most 1 if it is kept."""
+    """Share of each tolerance or limit that a trial uses, by name: at most 1 if it is kept."""
     values = np.array(trial.sensitivity)
     if not np.isfinite(values).all() or values.min() <= 0.0:
         return {"no figures": _MISSED}
@@ -151,7 +151,7 @@ def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 
 def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
-    """Place of least cost, not tried yet, on the surface through the trials; None if it promises no gain."""
+    """Fractions of least cost, not tried yet, on the surface through the trials; None if it promises no gain."""
     known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
     if len(known) < _FEWEST:
         return None
@@ -199,7 +199,7 @@ _WALLS = 60
 
 @dataclass(frozen=True)
 class UniformMembrane:
-    """A membrane of one material, of the size of the graded one. ``fraction`` is None for a catalogue resin."""
+    """A membrane of one material with the sizes of the graded one; ``fraction`` None: a resin of the catalogue."""
 
     name: str
     fraction: float | None
@@ -213,7 +213,7 @@ def trial_of(
     pole: float = np.nan,
     rim: float = np.nan,
 ) -> GradeTrial:
-    """Figures of a sensor by the solid; NaN, with the reason, if it has none. ``rate`` rates its limits."""
+    """Trial of a sensor by the solid; NaN and a reason without figures. ``rate``: rated pressure of its limits."""
     from pneutouch.mechanics.models.solid import solid_result
 
     unknown = (np.nan,) * len(pressures)

@@ -19,11 +19,11 @@ _DIGITS = 4
 """Digits of a fraction: a hundredth of a percent, finer than a droplet pattern resolves."""
 
 MixedResin = Callable[[float], CandidateResin]
-"""Function that gives the mix of a fraction as a resin."""
+"""Function that gives the mix with a volume fraction as a resin."""
 
 
 def greatest(law: ResolvedMixingCurve) -> float:
-    """Greatest fraction offered of a mix: every curve of its pair reaches it, and a wall may be so stiff."""
+    """Greatest fraction at which a mix is offered: every curve of its pair reaches it, and no wall is too stiff."""
     return min(law.wall_top, law.curve.common_top)
 
 
@@ -65,7 +65,7 @@ def _fraction(resin: CandidateResin) -> float:
 
 
 def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
-    """Candidates with the greatest margin, at most one for each fraction."""
+    """Rows of the candidates with the greatest margin, at most one for each fraction."""
     margin_list = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
     order = np.argsort(-np.minimum(np.min(margin_list, axis=0), 1.0), kind="stable")
     first = np.unique(pool.resin[order], return_index=True)[1]
@@ -73,7 +73,7 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
 
 
 def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:
-    """Fractions (n,) between the neighbouring levels at which the sensitivity is the target."""
+    """Fractions (n,), between those next to ``at``, at which the sensitivity is the target; else those of ``at``."""
     assert problem.sensitivity is not None
     known = levels(law)
     index = np.clip(np.searchsorted(known, at - 1e-9), 0, known.size - 1)

@@ -1,4 +1,4 @@
-"""The search in numbers: resins, bounds, the target. mm, N, MPa; sensitivities in kPa/N."""
+"""A selection problem in numbers: resins, bounds and target, in mm, N, MPa; sensitivities in kPa/N."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ _ROUNDED = 0.01
 
 @dataclass(frozen=True)
 class CandidateResin:
-    """A resin as the atlas needs it; ``grade`` where it is mixed from two."""
+    """A resin as the atlas needs it: modulus in MPa, stretch at break (inf: unknown); ``grade`` if it is a mix."""
 
     name: str
     material: Material
@@ -48,11 +48,11 @@ LimitUncertainty = Callable[[CandidateResin, SensorBatch], Array]
 class SelectionProblem:
     """Requirements on a sensor and the settled parameters; None for a free one. depth_share: plate travel over R0.
 
-    plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
-    dome. connector: its fit to domes of inner radius and wall (n,), mm; None if no connector matters. limit_spread:
-    where it is None, designs may be driven above their rated pressure. factors: factors on the atlas's figures, for a
-    contact or a law that it does not cover. anywhere: True if the ranking counts an unknown object and place of
-    contact.
+    plate_share: the plate's radius over R0 if that gives more than ``plate_radius``. dead_volume: mm3 for domes of
+    inner radius (n,). connector: its fit to domes of inner radius and wall (n,), mm; None if no connector matters.
+    limit_spread: uncertainty of the limits; None allows driving pressures above the rated one. factors: factors on the
+    atlas's figures, for a contact or a law that it does not cover. anywhere: True if the ranking counts an unknown
+    object and place.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -89,7 +89,7 @@ class SelectionProblem:
         return np.maximum(self.plate_radius, self.plate_share * radius)
 
     def batch(self, resin: Array, radius: Array, wall: Array, pressure: Array) -> SensorBatch:
-        """Candidates as sensors; resin (n,) numbers, radius and wall (n,) mm, pressure (n,) MPa."""
+        """Candidates as sensors; resin (n,) numbers in ``resins``, radius and wall (n,) mm, pressure (n,) MPa."""
         index = resin.astype(np.intp)
         ones = np.ones(radius.size)
         return SensorBatch(
@@ -106,7 +106,7 @@ class SelectionProblem:
         )
 
     def radii(self, ratio: Array) -> tuple[Array, Array]:
-        """Least and greatest inner radius for wall ratios: by the printer's least wall and by the size limit."""
+        """Least and greatest inner radius (n,), mm, for wall ratios (n,): by least wall, size limit and footprint."""
         if self.inner_radius is not None:
             fixed = np.full_like(ratio, self.inner_radius)
             return fixed, fixed

@@ -1,4 +1,4 @@
-"""The declaration of a coupon family: its subject, its drawing, its measurements and their instruments."""
+"""The declaration of a coupon family: its subject, drawing, measurements and instruments."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class Nominal:
 
 @dataclass(frozen=True, slots=True)
 class CouponContext:
-    """Subject of a coupon: a material, and the scene of a design if the coupon belongs to one."""
+    """Subject that a coupon is drawn for: a material, and the scene of a design if the coupon belongs to one."""
 
     material: Material
     scene: ResolvedDesign | None = None

@@ -35,7 +35,7 @@ class GaugeRow:
     middle: float
 
     def places(self) -> list[tuple[float, float]]:
-        """Position of the middle along x, and size, of every feature."""
+        """Position of the middle along x, and size, of every feature, mm."""
         steps = [_MARGIN + 0.5 * self.sizes[0], *(0.5 * (a + b) + _GAP for a, b in pairwise(self.sizes))]
         return list(zip(accumulate(steps), self.sizes, strict=True))
 

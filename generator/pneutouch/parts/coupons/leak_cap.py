@@ -46,7 +46,7 @@ def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
 
 
 def rim_radius(context: CouponContext, layout: Layout) -> float:
-    """Radius of the disc: over the whole flange, or inside the ring that clamps the flange."""
+    """Radius of the disc, mm: over the whole flange, or inside the ring that clamps the flange."""
     scene = context.design()
     if isinstance(scene.seat, ClampedFlange):
         return layout.outer_radius

@@ -113,7 +113,7 @@ HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
 
 @dataclass(frozen=True, slots=True)
 class RingFace:
-    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates``: it must lie flat on a surface."""
+    """A ring of a horizontal face: radii and ``z`` in mm; ``up``: facing up; ``mates``: to lie flat on a surface."""
 
     name: str
     z: float
@@ -125,7 +125,7 @@ class RingFace:
 
 @dataclass(frozen=True, slots=True)
 class LabelPosition:
-    """Position of a label: capitals ``height`` mm tall, centred ``radius`` mm from the axis, foot towards the axis."""
+    """Position of a label: capitals ``height`` mm tall, ``radius`` mm from the axis at ``angle`` rad, foot inwards."""
 
     face: RingFace
     height: float
@@ -172,7 +172,7 @@ def free_area(face: RingFace, solid: Solid, body: Body, depth: float, edge: floa
 
 
 def spot(face: RingFace, area: Any, box: tuple[float, float], heights: Sequence[float]) -> LabelPosition | None:
-    """The place for the tallest lettering of ``heights`` (mm), or None; ``box`` is width and height at 1 mm."""
+    """Place for the tallest lettering of ``heights`` (mm), None if none fits; ``box``: its width and height at 1 mm."""
     from manifold3d import CrossSection
 
     if area.is_empty():
@@ -278,7 +278,7 @@ class Marker:
         return _combined(body, (shape, ends[0], ends[1]), raised), mark
 
     def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> LabelPosition | None:
-        """Position at which the widest label of the tray fits on a geometry, so that all copies have theirs there."""
+        """Position where the widest label of the tray fits, the same for copies of a geometry; None without one."""
         key = (shape_of(solid), assembly.layout)
         if key not in self._spots:
             wall = self._printer.smallest.wall(solid.material.kind).recommended
@@ -334,7 +334,7 @@ class Marker:
 
 
 def shape_of(solid: Solid) -> Any:
-    """Key of a solid's geometry, without its resin: equal keys mean equal geometry."""
+    """Hashable key of a solid's geometry, whatever its resin: equal keys mean equal geometry."""
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
 
 

@@ -33,7 +33,7 @@ _LEAST_GAP = 0.5
 
 
 def check_mould_space(where: str, size: MouldSize) -> None:
-    """Raise InputError with the key of the design file ``where`` that leaves too little space for a detail."""
+    """Raise InputError, in the design file ``where``, on the key that leaves too little space for a detail."""
     _check_insert(where, size)
     shape, faces = size.shape, size.faces
     width, slope = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE, math.tan(shape.draft)
@@ -69,7 +69,7 @@ def check_mould_space(where: str, size: MouldSize) -> None:
 
 
 def _check_insert(where: str, size: MouldSize) -> None:
-    """Raise InputError if silicone cannot pass between the core and the ring: the mould is enlarged, not the ring."""
+    """Raise InputError if silicone cannot pass between core and ring; shrinkage enlarges the core, not the ring."""
     if size.insert is None:
         return
     gap = size.insert.web_inner - max(size.faces.rim.start[0], size.faces.rim.end[0])
@@ -180,7 +180,7 @@ def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssemb
 
 
 def shape_of(scene: ResolvedDesign) -> MouldShape:
-    """Shape of the mould as stated in a scene."""
+    """Shape of the mould that a scene states; the shrinkage is the material's, else 0, if none is stated."""
     stated, casting = scene.design.mould, scene.membrane_material.casting
     assert scene.mould_printer is not None
     shrinkage = stated.shrinkage_percent
@@ -204,12 +204,12 @@ FILM = 0.5
 
 LOSS_SHARE = 0.15
 LEAST_LOSS_ML = 2.0
-"""Loss on cup, stirrer and syringe: a share of the filling, but at least the volume; our choice, measure yours."""
+"""Silicone lost on cup, stirrer and syringe: a share of the filling, at least so many mL; our choice, measure yours."""
 
 
 @dataclass(frozen=True)
 class SiliconeBatch:
-    """Silicone of one filling: mL at the mould's size, g; ``parts_by_mass`` of the material's mix, empty if unknown."""
+    """Silicone of one filling, volumes per cavity of the mould. ``parts_by_mass``: mixing ratio, empty if unknown."""
 
     cavities: int
     cavity_mL: float
@@ -230,7 +230,7 @@ class SiliconeBatch:
 
     @property
     def volume_mL(self) -> float:
-        """Volume to mix."""
+        """Volume to mix: filling and loss."""
         return self.filled_mL + self.loss_mL
 
     @property
@@ -240,7 +240,7 @@ class SiliconeBatch:
 
     @property
     def parts_g(self) -> tuple[float, ...]:
-        """Masses to weigh of each part, in the order of ``parts_by_mass``."""
+        """Mass to weigh of each part, in the order of ``parts_by_mass``."""
         whole = sum(self.parts_by_mass)
         return tuple(self.mass_g * part / whole for part in self.parts_by_mass)
 

@@ -96,7 +96,7 @@ def mould_solids(size: MouldSize, material: Material) -> tuple[Solid, ...]:
 
 
 def cap(size: MouldSize, material: Material) -> Solid:
-    """The plate that forms the outer wall and the flange's top, a pocket for each cavity."""
+    """The plate that forms outer wall and flange's top of the membranes, with a pocket for each cavity."""
     low, high = size.cap_low, size.cap_high
     pocket, net = pocket_meridian(size, _PAST), pocket_meridian(size, 0.0).volume()
     cuts = tuple(Feature(Turned(pocket, Frame((x, y, 0.0))), net) for x, y in size.places)
@@ -151,7 +151,7 @@ def core(size: MouldSize, material: Material) -> Solid:
 
 
 def base(size: MouldSize, material: Material) -> Solid:
-    """Plate that presses the feet; overflowing silicone collects in its windows."""
+    """The plate that presses on the feet of the cores; overflowing silicone collects in its windows."""
     low, high = size.base_low, size.foot_low
     ledge = CLIP_LEDGE if size.shape.fastener == "clips" else 0.0
     radius = 0.5 * (SCREW.clearance_diameter + size.shape.hole_undersize)

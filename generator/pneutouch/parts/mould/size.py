@@ -73,7 +73,7 @@ class MouldShape:
 
 @dataclass(frozen=True, slots=True)
 class CavityFaces:
-    """Faces of the membrane, by the part of the mould that forms them, in the order of the membrane's meridian."""
+    """Faces of the cavity, named by the place on the membrane, in the order of the membrane's meridian."""
 
     inner: tuple[Segment, ...]
     rim: Line
@@ -92,7 +92,7 @@ class CavityFaces:
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
     def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
-        """This cavity with the given underside and edge of the flange, at their heights and outer radius."""
+        """These faces with another underside and edge of the flange, which keep their heights and outer radii."""
         low = underside.start[1]
         foot = self.rim.end[0], low
         return replace(
@@ -134,12 +134,12 @@ def scaled(piece: Segment, factor: float) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class MouldSize:
-    """All lengths of a mould in mm; heights are z coordinates.
-
-    ``seat_radius`` is the radius of the cap's seat at z = 0; it opens downwards at `TAPER`. ``columns`` along x and
-    ``rows`` along y are ``pitch`` apart, the first cavity at the origin. ``channel_radius`` is the radius of the vents'
-    circle. ``insert`` is the ring that the flange is cast around, at its own size: neither it nor its filling shrinks.
-    """
+    """All lengths of a mould in mm; heights are z coordinates. ``seat_radius`` is that of the cap's seat at z = 0,
+    which opens downwards at `TAPER`; ``foot`` the thickness of the core's foot; ``channel_radius`` that of the circle
+    of the ``gates``, pour channel and vents; ``neck`` and ``mouth`` radii of the pour channel; ``window`` that of the
+    base's windows. The ``columns`` of cavities along x and ``rows`` along y are ``pitch`` apart, the first cavity at
+    the origin; ``margin`` is the plate beyond them. ``insert`` is the ring that the flange is cast around: neither it
+    nor its filling shrinks."""
 
     shape: MouldShape
     faces: CavityFaces
@@ -252,7 +252,7 @@ _PAST = 1.0
 
 
 def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
-    """Mould of a coupon that lies on z = 0 and has the same outline at every height.
+    """Mould of a coupon that lies on z = 0 and has the same outline at every height. Raises TypeError for another.
 
     ``factor`` is the ratio of lengths of the mould to those of the cured coupon. The cavity's floor is at z = 0, the
     strike-off plane above it by the coupon's thickness times ``factor``.
@@ -275,7 +275,7 @@ def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
 
 
 def _scaled(shape: Meridian | Prism, factor: float, past: float) -> Turned | Prism:
-    """Coupon at the size of the mould, with its top raised by ``past`` mm."""
+    """A coupon's shape with lengths times ``factor``, its top raised by ``past`` mm."""
     if isinstance(shape, Prism):
         outline = tuple(scaled(piece, factor) for piece in shape.outline)
         return Prism(outline, factor * shape.low, factor * shape.high + past)

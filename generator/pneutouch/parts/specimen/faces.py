@@ -45,7 +45,7 @@ def boundary(triangles: Indices, size: int) -> Indices:
 
 
 def cut_places(spans: Array) -> list[float]:
-    """Places between spans (n, 2) in mm at which a straight cut meets no span, one for about every ``_PART``."""
+    """Places (mm) of straight cuts that meet no span (n, 2), one for about every `_PART`; none below `_LARGE` spans."""
     if len(spans) < _LARGE:
         return []
     order = spans[np.argsort(spans[:, 0], kind="stable")]
@@ -82,7 +82,7 @@ def plane(side: BoxSide) -> tuple[int, int]:
 
 
 def triangulated(points: Array, edges: Indices) -> Indices:
-    """Triangles (m, 3) of the region left of directed ``edges`` (n, 2) between plane ``points`` (k, 2); none is added.
+    """Triangles (m, 3) of the region left of directed ``edges`` (n, 2) between plane ``points`` (k, 2); adds no point.
 
     Raises ComputationError if the edges do not bound a region.
     """
@@ -98,7 +98,7 @@ def triangulated(points: Array, edges: Indices) -> Indices:
 
 
 def _loops(points: Array, edges: Indices) -> list[Indices]:
-    """The edges chained to loops; where several meet in a point, the leftmost turn keeps loops from crossing."""
+    """The edges chained to loops of vertices; where loops meet in a point, the leftmost turn keeps them apart."""
     leaving: dict[int, list[int]] = {}
     for a, b in edges.tolist():
         leaving.setdefault(a, []).append(b)
@@ -203,7 +203,7 @@ def _convex(corners: Array) -> bool:
 def complement(box: Box, inclusion: Mesh) -> Mesh:
     """The box minus a closed inclusion inside it; inclusion faces on the box's sides must lie exactly on them.
 
-    Raises ComputationError if the inclusion touches itself or the box's edges in a way that leaves no solid.
+    Raises ComputationError if the inclusion touches itself or the box's edges so that no solid is left.
     """
     return _Partition(box, inclusion).matrix()
 
@@ -235,7 +235,7 @@ class _Partition:
         return np.asarray(at[self._inclusion.triangles].all(axis=1))
 
     def _outline(self, side: BoxSide) -> Indices:
-        """Directed edges of the footprints on a side."""
+        """Directed edges around the inclusion's footprints on a side."""
         return boundary(self._inclusion.triangles[self._footprints[side]], len(self._inclusion.vertices))
 
     def _cut(self, side: BoxSide) -> list[tuple[int, int]]:

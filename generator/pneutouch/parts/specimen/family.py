@@ -1,4 +1,4 @@
-"""Interface of a family of patterns: its input and output."""
+"""Interface of a family of patterns, with the boxes, meshes and checks that the families share."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Mesh:
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
-    """One mesh from several that do not touch each other."""
+    """One mesh of several that do not touch one another."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -102,7 +102,7 @@ class PatternContext:
     where: str
 
     def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
-        """Error for one value of a layer: names file, layer, key and value, and states what would be right."""
+        """Error for one value of a layer: names file, layer, key and value; ``right`` states what would be valid."""
         given = f"{value:g}" if isinstance(value, float | int) else shown(value)
         return InputError(f"layer[{number}].{key} = {given}: {right}", file=self.where)
 

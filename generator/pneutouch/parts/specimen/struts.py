@@ -68,7 +68,7 @@ corners of the lattice, and the remaining piece must neither almost vanish nor b
 
 @dataclass(frozen=True)
 class Lattice:
-    """A strut lattice: kind, cell and strut radius in mm, and number of sides of a strut, a multiple of four."""
+    """A strut lattice: kind, cell and strut radius in mm, and number of sides of a round strut, a multiple of four."""
 
     kind: str
     cell: float
@@ -308,7 +308,7 @@ def _solved(layer: StrutLattice, context: PatternContext, number: int, around: B
 
 
 def _next(tried: list[tuple[float, float]], target: float) -> float:
-    """Next radius: at first with the fraction taken as proportional to its square, then along the secant."""
+    """Next radius to try: at first as if the fraction grew with its square, then along the secant of two tries."""
     radius, fraction = tried[-1]
     if len(tried) == 1 or tried[-1][1] == tried[-2][1]:
         return radius * math.sqrt(target / fraction)

@@ -62,7 +62,7 @@ class MarchingGrid:
 
 
 def level_set(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float) -> Mesh:
-    """Surface on which a wave equals ``level``, facing upwards; open on the box's sides.
+    """Surface on which a wave equals ``level``, facing greater values; open on the box's sides.
 
     ``values`` are those of the wave at the grid's nodes. Vertices lie on the surface itself, not on its interpolation.
     """
@@ -215,7 +215,7 @@ SURFACES: dict[str, PeriodicFunction] = {"gyroid": _gyroid, "schwarz-p": _schwar
 """First nodal approximations; x, y and z in radians, with 2 pi per cell (von Schnering and Nesper 1991)."""
 
 PINCHED: dict[str, float] = {"gyroid": math.sqrt(2.0), "schwarz-p": 1.0, "diamond": math.sqrt(0.5)}
-"""Levels at which a neck closes, at the saddle of the wave. Beyond it the body falls apart."""
+"""Level at which a neck closes, by kind: that of the wave's saddle. Beyond it the body falls apart."""
 
 RADIUS: dict[str, float] = {"gyroid": 0.13, "schwarz-p": 0.16, "diamond": 0.066}
 """Radius of curvature in cells that sets the step of the grid; the resulting deviation is tested."""
@@ -255,7 +255,7 @@ class PeriodicSurface:
         return self._wave(x[:, None, None], y[None, :, None], z[None, None, :])
 
     def at(self, box: Box) -> Callable[[Array], Array]:
-        """The wave as a function of points (n, 3) in mm."""
+        """The wave as a function of points (n, 3) in mm; cells start at the box's least corner."""
         low = np.array(box.low)
 
         def wave(points: Array) -> Array:
@@ -315,7 +315,7 @@ def fraction_of(surface: PeriodicSurface, box: Box, thickness: float) -> float:
 
 
 _PER_CELL = 7.0
-"""Triangles of a sheet per squared step of the grid and area of its two faces per cell; measured, rounded up."""
+"""Triangles of a face over its area in squared steps of the grid; measured, rounded up. A cell has 3 cell^2 of face."""
 
 
 def box(layer: MinimalSurface, context: PatternContext, number: int) -> Box:
