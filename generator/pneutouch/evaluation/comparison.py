@@ -131,7 +131,7 @@ FIGURES = (
 
 @dataclass(frozen=True, slots=True)
 class ComparedFigure:
-    """A figure, its expanded interval (None if unknown) and the effects of its sources of uncertainty."""
+    """A figure, the ends of its k = 2 interval (None if unknown), and effects of its sources of uncertainty."""
 
     value: float
     low: float | None = None

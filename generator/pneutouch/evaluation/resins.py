@@ -41,10 +41,8 @@ class SimulatedResin:
 
 
 def rating_of(scene: ResolvedDesign, sensor: Sensor) -> Rating:
-    """The rated pressure of a scene's sensor, by the limits of the cheapest model that is good enough.
-
-    The limits are those of free inflation: off the axis the central plate stands for the object, and nothing is pressed
-    off the axis."""
+    """The rated pressure of a scene's sensor, by the limits of the cheapest model that is good enough. The limits are
+    those of free inflation, where the object does not count: one off the axis is replaced by the central plate."""
     if sensor.protocol.off_axis is not None:
         central = {"body": None, "offset": 0.0, "tilt": 0.0, "shear": 0.0}
         return rating_of(scene, sensor.replace(**central))

@@ -1,1 +1,1 @@
-"""The one typed tree of what is computed: frozen records in boundary units, of which every document is a dump."""
+"""Frozen records, in boundary units, of all that is computed; every document that is written is a dump of one."""

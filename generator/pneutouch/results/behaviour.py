@@ -21,7 +21,7 @@ class GaugeState:
     smallest_force_at_first_contact_N: float | None
     """Smallest force that is detected at first contact, where the curve starts."""
     zero_drift_kPa_per_K: float
-    """Change of the pressure without contact by temperature."""
+    """Change of the pressure without contact with temperature."""
     zero_drift_N_per_K: float | None
     """The same drift, read as a force."""
     warming_that_reads_as_smallest_force_K: float | None
@@ -43,15 +43,15 @@ class GaugeFigures:
     reads_to_kPa: float
     """Greatest gauge pressure that is read."""
     noise_kPa: float | None
-    """Standard deviation of one reading."""
+    """Standard deviation of one reading; null: not known."""
     step_kPa: float | None
-    """Smallest step of a reading."""
+    """Smallest step of a reading; null: not known."""
     threshold_kPa: float | None
-    """Pressure rise that counts as detected."""
+    """Pressure rise that counts as detected; null: not known."""
     rate_Hz: float | None
-    """Readings a second."""
+    """Readings a second; null: not known."""
     bandwidth_Hz: float | None
-    """Half of the rate: faster changes are not followed."""
+    """Half of the rate: faster changes are not followed; null: not known."""
     criterion: str
     """Criterion of detection, in words."""
     limited_by: str | None
@@ -173,7 +173,7 @@ class DynamicRecord:
     bandwidth_limited_by: str | None
     """Effect that limits that frequency; null: none."""
     within_5_percent_Hz: float | None
-    """Frequency up to which the gain is within 5 %."""
+    """Frequency up to which the gain is within 5 %; null: none found."""
     within_5_percent_limited_by: str | None
     """Effect that limits that frequency; null: none."""
     delay_ms: float
@@ -259,7 +259,7 @@ class Aged:
     modulus_ratio: float
     """Modulus after a year over the fresh one."""
     assumes: str
-    """Assumption behind it."""
+    """Assumption behind that ratio."""
 
 
 class CalibratedBy(CalibrationSource):

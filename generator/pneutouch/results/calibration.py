@@ -29,11 +29,11 @@ class EstimateRecord:
     parameter: str
     """The parameter in words."""
     key: str
-    """Name with unit."""
+    """Key of the parameter, which ends in its unit."""
     unit: str
     """Unit of the value."""
     value: float
-    """Value."""
+    """Fitted value."""
     interval_95: tuple[float, float] | None
     """Ends of the 95 % interval; null: the runs give none."""
     on_bound: bool
@@ -65,9 +65,9 @@ class GoodnessRecord:
     chi_squared_per_degree: float | None
     """The sum over the degrees of freedom; null: there are none."""
     points_used: int
-    """Points that were used."""
+    """Points that the fit used."""
     points_left_out: int
-    """Points that were left out."""
+    """Points that the fit left out."""
     scatter_over_stated: Mapping[str, float]
     """Scatter of the readings over the stated one, by channel."""
     model_leaves_out_share_of_reading: Mapping[str, float]
@@ -209,7 +209,7 @@ class CalibrationRecord:
     residuals: tuple[ResidualRecord, ...]
     """Residuals of each run."""
     misses: tuple[MissRecord, ...]
-    """Stretches of travel where the model misses."""
+    """Stretches of travel where the fitted model deviates from the runs."""
     strongly_correlated: tuple[CorrelatedRecord, ...]
     """Parameters that the runs cannot separate."""
     unidentified: tuple[str, ...]

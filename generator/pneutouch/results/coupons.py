@@ -52,9 +52,9 @@ class MeasuredFigure:
     about: str
     """Subject of the figure."""
     name: str
-    """Name with unit."""
+    """Name of the figure, with its unit."""
     value: float
-    """Value."""
+    """Value of the figure."""
     spread: float | None
     """Standard deviation; null: not known."""
     count: int | None

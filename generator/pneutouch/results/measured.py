@@ -59,7 +59,7 @@ class CampaignFigure:
     """A measured figure."""
 
     value: float
-    """Value."""
+    """Measured value of the figure."""
     low: float | None
     """Lower end of the interval; null: there is none."""
     high: float | None
@@ -91,7 +91,7 @@ class MeasuredGroup:
     files: tuple[str, ...]
     """Files of the runs."""
     why_not_predicted: str | None
-    """Reason for which there is no predicted figure; null: there are."""
+    """Reason why there are no predicted figures; null: there are some."""
     figures: Mapping[str, CampaignFigure]
     """Figures by name."""
     depth_mm: float | None = None
@@ -111,7 +111,7 @@ class DoubtfulPart:
     why: str
     """Reason for the doubt."""
     used: bool
-    """True if it was used all the same."""
+    """True if the part was used nevertheless."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,7 @@ class InjectionFigure:
     figure: str
     """Name of the figure, with the run."""
     value: float
-    """Value."""
+    """Value of the figure."""
     standard_error: float | None
     """Standard error of the value."""
     unit: str

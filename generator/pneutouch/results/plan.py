@@ -63,7 +63,7 @@ class PlannedInjection:
     sensor_volume_mL: float | None
     """Air to be injected into the sensor, in all; null: no round volume fits."""
     sensor: tuple[InjectedVolume, ...]
-    """Volumes that are pushed into the sensor in turn."""
+    """Volumes that are pushed into the sensor in turn; empty: none fits."""
     more_dead_volume_mL: float
     """Dead volume that is added in with_more_dead_volume_kPa."""
     line_volume_mL: float | None
@@ -211,7 +211,7 @@ class PlannedCampaign:
     plate_diameter_mm: float
     """Diameter of the flat plate."""
     rig: Mapping[str, Any]
-    """The rig."""
+    """Abilities of the rig, and the file that states them."""
     sensors: tuple[PlannedSpecimen, ...]
     """Specimens to be measured."""
     resins: tuple[PlannedResin, ...]

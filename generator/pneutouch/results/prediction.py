@@ -37,9 +37,9 @@ class ErrorEstimate:
     sensitivity_relative_0kPa_22kPa: tuple[float | None, ...] = ()  # noqa: N815
     """Errors of the sensitivity without driving pressure and at 22 kPa."""
     sensitivity_discretisation_relative: float | None = None
-    """Error of the sensitivity by the mesh."""
+    """Error of the sensitivity by the mesh of the solid."""
     sensitivity_tabulation_relative: float | None = None
-    """Error of the sensitivity by the table."""
+    """Error of the sensitivity by interpolation in the atlas."""
     limit_apex_height_relative: float | None = None
     """Known error of the apex height at the limit point."""
     apex_height_relative: float | None = None

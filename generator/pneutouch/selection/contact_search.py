@@ -52,8 +52,8 @@ SolveCandidate = Callable[[CandidateResin, CandidatePool, list[float]], SolvedSt
 """Function that solves a candidate (pool of one row) by the solid under its contact, at rising pressures in MPa."""
 
 ContactUncertainty = Callable[[CandidateResin, CandidatePool, SensorState], float]
-"""Relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact, from its solved state;
-NaN if unknown."""
+"""Function that gives the relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact,
+from its solved state; NaN if unknown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ class ContactTrial:
     def candidate(
         self, solve: SolveCandidate, weights: tuple[float, float], uncertainty: ContactUncertainty, rounds: int
     ) -> Candidate:
-        """The trial as a candidate, with the uncertainty and the span under its contact, by the solid."""
+        """The trial as a candidate; uncertainty and span of sensitivities by the solid, under its contact."""
         highest = float(rated(self.problem, self.pool.resin, self.pool.radius, self.pool.wall)[0])
         span = self._span(solve, highest)
         known = np.nan if self.state is None else uncertainty(self.resin, self.pool, self.state)

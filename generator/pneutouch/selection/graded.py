@@ -121,8 +121,8 @@ def grade_search(target: GradeTarget, levels: Array, solve: TryGrade, progress: 
     """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a target.
 
     A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and
-    again with that trial in it. It stops where every tolerance is half kept, or where the surface promises no gain.
-    ``most`` bounds the trials of both together.
+    again with that trial in it. It stops where a trial uses at most half of every tolerance, or where the surface
+    promises no gain. ``most`` bounds the trials of both together.
     """
     trials: list[GradeTrial] = []
 

@@ -28,7 +28,7 @@ def greatest(law: ResolvedMixingCurve) -> float:
 
 
 def levels(law: ResolvedMixingCurve, count: int = LEVELS) -> Array:
-    """Fractions (count,) even in the logarithm of the modulus, from the soft resin to where every curve ends.
+    """Fractions (count,) even in the logarithm of the modulus, from the soft resin to `greatest`.
 
     Beyond the last point of the stiffest curve a mix may be rigid, if that curve is true: it is not offered.
     """

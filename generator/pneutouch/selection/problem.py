@@ -17,7 +17,7 @@ from pneutouch.spec.material import Material
 _SMALLEST, _LARGEST = 2.0, 60.0
 """Inner radii that are searched where none is given, mm."""
 _HALVINGS = 14
-"""Number of halvings of a radius of at most 60 mm: 4 um are left."""
+"""Number of halvings in the search of a radius of at most 60 mm, to within 4 um."""
 _ROUNDED = 0.01
 """Largest change of a wall by rounding, mm."""
 
@@ -41,7 +41,7 @@ class ConnectorFit(NamedTuple):
 
 
 LimitUncertainty = Callable[[CandidateResin, SensorBatch], Array]
-"""Relative standard uncertainty of the limit pressure of sensors of one resin, (n,)."""
+"""Function that gives the relative standard uncertainty (n,) of the limit pressure of sensors of one resin."""
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ class CalibratedDesign(Table):
 
 
 class CalibratedParameter(Table):
-    """One [[parameters]] entry."""
+    """One [[parameters]] entry: a parameter with its value, fitted or as designed."""
 
     key: ParameterKey = Field(description="Name with unit.")
     value: float = Field(description="Fitted, or as designed where it was not fitted.")

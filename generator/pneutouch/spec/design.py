@@ -148,7 +148,7 @@ class Connector(SparseTable):
 
 
 class Pneumatics(SparseTable):
-    """[pneumatics]: the air."""
+    """[pneumatics]: pressures, tube, gauge and gas volume."""
 
     left_out = ("gauge",)
 
@@ -211,7 +211,7 @@ class Indentation(Table):
 
 
 class Print(Table):
-    """[print]: the machines."""
+    """[print]: the printers, and the orientation of the membrane."""
 
     profile: str = name("objet260-connex", registry="printers", help="Printer of the membrane.")
     connector_profile: str = name("abs-filament", registry="printers", help="Printer of the connector.")

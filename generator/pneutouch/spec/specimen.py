@@ -222,7 +222,7 @@ class FramePlate(Table):
 
 
 class SpecimenPrint(Table):
-    """[print]: the machine."""
+    """[print]: the printer."""
 
     profile: str = name("j735", registry="printers", help="Printer; it holds all materials at once.")
 
