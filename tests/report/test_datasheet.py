@@ -304,6 +304,13 @@ def test_the_friction_stands_with_the_conditions_of_use(changes, kind, held):
     assert prose.limits_of_use(scene).endswith(held)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3, float("inf")])
+def test_the_place_of_the_contact_stands_with_it_whatever_the_friction(friction):
+    changes = {"contact.object": "ball", "contact.ball_radius_mm": 5.0, "contact.offset_mm": 2.0}
+    scene = load_scene("paper-dome", {**changes, "contact.friction": friction})
+    assert scene.design.contact.place in prose.contact_body(scene)[2]
+
+
 @pytest.mark.parametrize(
     "name",
     [

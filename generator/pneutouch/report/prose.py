@@ -90,10 +90,10 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
 
 
 def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
-    """Words for a rigid object: friction before its name, or after it for a coefficient, which leaves out the place."""
+    """Words for a rigid object and its place: friction before its name, or after it for a coefficient."""
     place = f", {contact.place}" if contact.off_axis else ""
     if 0.0 < contact.friction < float("inf"):
-        return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}"
+        return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}{place}"
     return f"rigid, {shape}{contact.hold} {name}{place}"
 
 

@@ -77,7 +77,7 @@ class Uploads:
     def _make_room(self, name: str, size: int) -> None:
         """Remove the oldest files to fit one that has come to ``size`` bytes. Raises InputError if that fails."""
         if size > LARGEST_FILE:
-            remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
+            remedy = f"give files of at most {LARGEST_FILE >> 20} MiB, or use the commands"
             raise InputError("the file is too large", key=name, remedy=remedy)
         while self._bytes() > _LARGEST_SUM or len(self._files) + len(self._coming) > _MOST_FILES:
             if not self._files:
@@ -211,7 +211,7 @@ def _refused_question(path: str, headers: dict[str, str]) -> Response | None:
 def too_large(path: str) -> Response:
     """The answer to a body that is longer than ``path`` allows."""
     what = (
-        f"a file has at most {LARGEST_FILE >> 20} MB"
+        f"a file has at most {LARGEST_FILE >> 20} MiB"
         if path == UPLOADS
         else f"a question has at most {LARGEST_BODY} bytes"
     )

@@ -69,7 +69,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
 
 
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
-    """Source for the possible error of an assumed mixing curve; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
+    """Source for the possible error of an assumed mixing curve; see `ResolvedMixingCurve.band_at`."""
     return UncertaintySource(
         "mixing fraction",
         "shear_modulus",
