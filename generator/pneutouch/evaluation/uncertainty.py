@@ -131,12 +131,14 @@ def spread(
     *,
     anywhere: bool = False,
     aged: float = 1.0,
+    batch: SensorBatch | None = None,
 ) -> SensorSpread:
     """The sources of a sensor at ascending driving pressures (MPa); the atlas covers it under a plate without friction.
 
     ``materials`` are all known resins: the model's error is taken from the measured ones. ``model`` gives the numerical
     error. ``states`` are those of the solid under another contact, at pressures already solved. ``anywhere`` counts an
     unknown place of contact, if the design's own is the central plate; ``aged`` is the age that counts, years.
+    ``batch`` are several sensors, in place of this one at its pressures, for which everything else is the same.
     """
     from pneutouch.mechanics.atlas.coverage import under_plate
     from pneutouch.mechanics.atlas.press import batch_of
@@ -154,7 +156,7 @@ def spread(
 
             of_friction = friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=of_friction)
-    batch = batch_of(under_plate(sensor), pressures)
+    batch = batch_of(under_plate(sensor), pressures) if batch is None else batch
     numerical = {SENSITIVITY_KEY: stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
     of_sensor = sources(
         batch,

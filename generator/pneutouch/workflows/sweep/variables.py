@@ -9,9 +9,12 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, spread, why_unknown
-from pneutouch.mechanics import Sensor, SensorState
+from pneutouch.mechanics import SensorState
+from pneutouch.mechanics.atlas.coverage import under_plate
 from pneutouch.mechanics.atlas.figures import SENSITIVITY
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
@@ -146,37 +149,45 @@ def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
 
 def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[list[Interval]]:
     """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as ``predict`` states them;
-    None where it is unknown. All sensors in one pass through the atlas."""
-    spreads = [_spread(each, each.sensor.even) for each in evaluations]
-    together = [(each.batch, each.sources) for each in spreads if each is not None and each.contact is None]
-    budgets = iter(propagate_groups(together) if together else ())
-    intervals: list[list[Interval]] = []
-    for evaluation, each in zip(evaluations, spreads, strict=True):
-        states = evaluation.prediction.states
-        if each is None:
-            intervals.append([None] * len(states))
+    None where it is unknown. All sensors in one pass through the atlas, their sources once for those alike."""
+    widths: list[Array | None] = [None] * len(evaluations)
+    alike: dict[tuple[Any, ...], list[int]] = {}
+    for k, one in enumerate(evaluations):
+        if why_unknown(one.sensor.even, one.prediction.model) is not None:
+            continue
+        scene, near = one.scene, is_near_paper(one.sensor.even)
+        if scene.calibration or scene.design.contact.anywhere or one.sensor.protocol.other_contact is not None:
+            widths[k] = _spread([one]).combined().budget.expanded[SENSITIVITY]
         else:
-            budget = next(budgets) if each.contact is None else each.combined().budget
-            widths = budget.expanded[SENSITIVITY].tolist()
-            intervals.append([_interval(*pair) for pair in zip(states, widths, strict=True)])
-    return intervals
+            shared = id(scene.membrane_material), id(scene.printer), one.prediction.model, near
+            alike.setdefault(shared, []).append(k)
+    groups = [_spread([evaluations[k] for k in rows])[:2] for rows in alike.values()]
+    for rows, budget in zip(alike.values(), propagate_groups(groups) if groups else (), strict=True):
+        ends = np.cumsum([len(evaluations[k].prediction.states) for k in rows])
+        for k, part in zip(rows, np.split(budget.expanded[SENSITIVITY], ends[:-1]), strict=True):
+            widths[k] = part
+    return [
+        [None if width is None else _interval(state, float(width[i])) for i, state in enumerate(one.prediction.states)]
+        for one, width in zip(evaluations, widths, strict=True)
+    ]
 
 
-def _spread(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
-    """The sources of an evaluation's sensor; None where its uncertainty is unknown."""
-    prediction, scene = evaluation.prediction, evaluation.scene
-    if why_unknown(sensor, prediction.model) is not None:
-        return None
+def _spread(evaluations: Sequence[Evaluation]) -> SensorSpread:
+    """The sources of an evaluation's states, or of those of several whose sources are alike."""
+    first = evaluations[0]
+    scene, states = first.scene, first.prediction.states
+    sensors = [(under_plate(e.sensor.even), [s.driving_pressure for s in e.prediction.states]) for e in evaluations]
     return spread(
-        sensor,
-        [state.driving_pressure for state in prediction.states],
+        first.sensor.even,
+        sensors[0][1],
         scene.membrane_material,
-        list(evaluation.resins.values()),
+        list(first.resins.values()),
         scene.printer,
-        prediction.model,
+        first.prediction.model,
         scene.calibration,
-        prediction.states,
+        states,
         anywhere=scene.design.contact.anywhere,
+        batch=SensorBatch.join([batch_of(*each) for each in sensors]),
     )
 
 
