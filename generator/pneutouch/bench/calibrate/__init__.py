@@ -1,1 +1,1 @@
-"""Calibrate: fit the model to the sensor in hand, and state its uncertainty."""
+"""Calibration: fit of the model's parameters to measurements of one sensor, with intervals."""

@@ -1,4 +1,4 @@
-"""Fit of one sensor's parameters to its measurements, with intervals, and the parameters that the data leave open."""
+"""Fit of a sensor's parameters to its measurements, with intervals, and the parameters the data do not determine."""
 
 from dataclasses import dataclass
 
@@ -15,37 +15,37 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Sensor
 
 _START_SHARE = 0.9
-"""The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""
+"""Greatest driving pressure over limit pressure at which the search may begin: our choice."""
 
 _ROUNDS = 2
 """Repetitions of the fit with errors and discrepancy taken from the residuals: our choice, a third changes nothing."""
 
 _CENTRED = 3
-"""Greatest number of refits with the solid's contact ratio recomputed at the estimate: our choice."""
+"""Greatest number of refits with the solid's correction of the atlas recomputed at the estimate: our choice."""
 
 _NEAR = 0.02
-"""Distance of the estimate below which that ratio is kept: with friction it moves the force by less than 0.005."""
+"""Distance of contacts (`FittedContact.distance`) below which the correction is kept; it changes forces by < 0.005."""
 
 _SMOOTH = 0.1
-"""Model discrepancy, share of the reading, allowed while the scatter of points is estimated: our choice, generous."""
+"""Model discrepancy, share of the reading, assumed while the scatter of points is estimated: our choice, generous."""
 
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFit:
-    """A fit; coordinates as in `CalibrationParameters`.
+    """Result of a fit; coordinates as in `CalibrationParameters`.
 
     Attributes:
-        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, in the laboratory's air.
+        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, at the ambient pressure of
+            the runs.
         problem, solution: Least-squares problem, weighted with the scatter of the runs, and its solution.
         covariance: Uncertainty of the solution.
-        half_width: Half-widths of the 95 % intervals, (k,); NaN for a parameter on a bound.
-        chi_squared, freedom: Sum of squared residuals by the covariance of reading, atlas, first contact and what the
-            model leaves out, and its degrees of freedom.
-        channel_factor: Ratios of the points' standard deviations to the stated ones: force, rise, injection.
-        sizes: Model discrepancy, common to all runs, share of the reading: force, rise, injection.
+        half_width: Half-widths of the 95 % intervals, (k,); NaN for a parameter on a bound or without data and prior.
+        chi_squared, freedom: Chi-squared of the residuals, whose covariance includes reading, atlas, first contact and
+            model discrepancy, and its degrees of freedom.
+        channel_factor: Ratios of the points' standard deviations to the stated ones: force, rise, injection; (3,).
+        sizes: Model discrepancy, common to all runs, share of the reading: force, rise, injection; (3,).
         run_factor: Ratio of the variance between runs to that of independent points.
-        contact: Contact whose ratio, from the solid, the model applies; None for a plate without friction.
-    """
+        contact: Input of the solid's correction of the atlas; None where the atlas covers the sensor without it."""
 
     observations: Observations
     points: ObservationPoints
@@ -68,18 +68,18 @@ class CalibrationFit:
         return self.parameters.full(self.solution.at)
 
     def model_at(self, points: ObservationPoints) -> AtlasModel:
-        """The model that was fitted, at other points."""
+        """The fitted model, evaluated at ``points`` in place of the points of the fit."""
         return AtlasModel(self.sensor, points, self.contact)
 
     @property
     def left_out(self) -> Flags:
-        """Curve points that the model does not reach, (c, m); see also `injections_left_out`."""
+        """Flags of the curve points that the model does not reach, (c, m); see also `injections_left_out`."""
         size = self.points.there.size
         return self.points.there & ~self.solution.use[:size].reshape(self.points.there.shape)
 
     @property
     def injections_left_out(self) -> Flags:
-        """Injected volumes that the model does not reach, (i, n)."""
+        """Flags of the injected volumes that the model does not reach, (i, n)."""
         size = self.points.there.size
         return self.points.known & ~self.solution.use[2 * size :].reshape(self.points.known.shape)
 
@@ -89,11 +89,11 @@ def fit(
 ) -> CalibrationFit:
     """Fit ``parameters`` of ``sensor`` to observations.
 
-    First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and
-    with the scatter between runs, so that the priors are weighed against the information in the data. The model
-    discrepancy is as large as the residuals show, at least ``floor`` (see `discrepancy`). Under another contact than a
-    plate without friction the fit is repeated with the solid's ratio at the estimate. Raises InputError for too few
-    points, ComputationError where no fit is found."""
+    The first fit uses the stated errors of reading and atlas, later ones the errors that the residuals show, by
+    channel, and the scatter between runs; so the priors get the weight that the data leave them. The model discrepancy
+    is estimated from the residuals and is at least ``floor``, (3,) shares of the reading (`sizes_of`). Where the solid
+    corrects the atlas (`FittedContact`), the fit is repeated with the correction at the estimate. Raises InputError for
+    too few points or a sensor that the atlas does not cover, ComputationError where no fit is found."""
     sensor = sensor.replace(ambient_pressure=observations.ambient)
     points, count = points_of(observations), len(parameters.fitted)
     if not parameters.priors and int(points.use.sum()) <= count:
@@ -119,12 +119,12 @@ def fit(
 
 
 def _moved(contact: FittedContact | None, nearer: FittedContact | None) -> bool:
-    """True if the ratio at an estimate is to be taken in place of the present one."""
+    """True if the solid's correction at the estimate, ``nearer``, must replace the present one, ``contact``."""
     return contact is not None and nearer is not None and contact.distance(nearer) >= _NEAR
 
 
 def _roughly(model: AtlasModel, parameters: CalibrationParameters, at: Array, floor: Array) -> LeastSquaresSolution:
-    """A fit that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale."""
+    """A first fit with errors that are shares of full scale, and without shared unknowns."""
     points = model.points
     errors = np.hypot(points.errors, points.full_scale * floor[points.channels])
     return solve(LeastSquaresProblem(model, parameters, errors, np.zeros((errors.size, 0))), at)
@@ -139,7 +139,7 @@ def _fit(
     contact: FittedContact | None,
     start: Array,
 ) -> CalibrationFit:
-    """`fit` with the solid's ratio of a contact, from ``start``."""
+    """`fit` with the solid's correction for ``contact`` (None: no correction), from the coordinates ``start``, (k,)."""
     model = AtlasModel(sensor, points, contact)
     solution = _roughly(model, parameters, start, floor)
     for _ in range(_ROUNDS):
@@ -164,7 +164,7 @@ def _fit(
 
 
 def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Derivatives of the values, over their errors, by parameters uncertain but not fitted, (N, 5); else 0."""
+    """Derivatives of the values over their errors, (N, 5), by parameters with a prior that are not fitted; else 0."""
     slopes = np.zeros((solution.residual.size, len(NAMES)))
     others = list(problem.chosen.others)
     if others:
@@ -178,7 +178,7 @@ def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Arr
 
 
 def _sizes(problem: LeastSquaresProblem, solution: LeastSquaresSolution, shared: SharedUnknowns, floor: Array) -> Array:
-    """Sizes of the model discrepancy, (3,), from the residuals that parameters with a prior do not explain."""
+    """Sizes of the model discrepancy, (3,), from the residuals that no parameter, fitted or with a prior, explains."""
     others, use = list(problem.chosen.others), solution.use
     residual, jacobian, _, _ = problem.look(solution.at)
     whole = np.hstack([jacobian, _others(problem, solution)[:, others]])
@@ -191,7 +191,7 @@ def _sizes(problem: LeastSquaresProblem, solution: LeastSquaresSolution, shared:
 
 
 def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationParameters) -> Array:
-    """Start values: the design's, the modulus raised if the dome would burst at a pressure that the sensor stood."""
+    """Start values, (k,): the design's; the modulus raised if the dome would burst at a pressure that was measured."""
     start = parameters.start[list(parameters.fitted)].copy()
     if MODULUS in parameters.fitted and points.driving.size:
         slices = shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ())
@@ -202,7 +202,7 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
 
 
 def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Root mean square by channel, (3,), at least 1, of the residuals beyond the smooth shared errors."""
+    """Root mean square of each channel's residuals without what shared unknowns explain, (3,), at least 1."""
     factors, use = np.ones(3), solution.use
     residual, shared = problem.look(solution.at)[0], problem.shared[use]
     explained = shared.T @ shared
@@ -221,13 +221,13 @@ CORRELATED = 0.95
 then 3 times that with the other known."""
 
 UNSEEN = 0.7
-"""Share of the prior standard deviation that remains, above which a parameter counts as not determined by the data: our
-choice; they then weigh no more than the prior."""
+"""Posterior over prior standard deviation above which a parameter counts as not determined by the data: our choice; the
+data then weigh no more than the prior."""
 
 _LEAST = 1e-12
 _NEEDED = 0.5
-"""Share of the prior standard deviation that the data alone leave, above which more than two parameters count as
-strongly correlated: our choice."""
+"""Standard deviation by the data alone, over that of the prior, above which more than two parameters count as strongly
+correlated: our choice."""
 _MEMBER = 0.3
 _NAMED = 0.25
 """Least weight of a parameter in a correlated group, and of one in a named combination."""
@@ -235,16 +235,16 @@ _NAMED = 0.25
 
 @dataclass(frozen=True, slots=True)
 class CorrelatedParameters:
-    """Strongly correlated parameters.
+    """Strongly correlated parameters, m of them.
 
     Attributes:
-        members: Numbers of the parameters.
+        members: Their indices in `NAMES`.
         correlation: Greatest correlation among them, in the data alone, with its sign.
-        alone: Standard deviation of each by the scatter of the data alone, were the model true; of modulus and wall
-            relative, of the dead volume mm3, of the offset mm.
-        given: The same if the other members were known.
-        combination: Exponents of modulus and wall in the product that is known, if these two are the members; else
-            None."""
+        alone: Standard deviations, (m,), by the data's scatter alone, if the model were true: relative for modulus and
+            wall, mm3 for the dead volume, mm for the offset.
+        given: The same if the other members were known, (m,).
+        combination: Exponent a of the best-determined product modulus x wall^a if these two are the members; None for
+            other members or where the wall hardly contributes."""
 
     members: tuple[int, ...]
     correlation: float
@@ -255,7 +255,7 @@ class CorrelatedParameters:
 
 @dataclass(frozen=True, slots=True)
 class Identifiability:
-    """Numbers of parameters that the data do not determine (without those of an ambiguity), and the ambiguities."""
+    """Parameters that the data do not determine."""
 
     unseen: tuple[int, ...]
     ambiguities: tuple[CorrelatedParameters, ...]
@@ -294,10 +294,10 @@ def _left(fit: CalibrationFit, place: int, seen: bool) -> float:
 
 
 def _groups(curves: Array, known: Array, numbers: Array, prior_spread: Array) -> list[CorrelatedParameters]:
-    """Sets of correlated parameters: those along the directions of which the curves' information (n, n) is least.
+    """Correlated parameters: those along eigenvectors of the curves' information (n, n) with small eigenvalues.
 
-    ``known``, (n, n), is the information with errors that many values share taken into account.
-    """
+    ``known``, (n, n), is the information that accounts for errors shared by many values; ``numbers``, (n,), are indices
+    in `NAMES`."""
     scale = np.sqrt(np.diag(curves))
     values, vectors = np.linalg.eigh(curves / np.outer(scale, scale))
     covariance = (vectors / np.maximum(values, _LEAST)) @ vectors.T / np.outer(scale, scale)
@@ -329,7 +329,7 @@ def _spreads(known: Array) -> Array:
 
 
 def _product(covariance: Array, numbers: Array) -> float | None:
-    """Exponent a of the best-determined product modulus x wall^a, if these two are the pair; else None."""
+    """Exponent a of the best-determined product modulus x wall^a, of a pair of these; else None."""
     if numbers.size != 2 or not LOGARITHMIC[numbers].all():
         return None
     # Along the ridge d ln mu = -a d ln t0; the ridge is the direction of the greatest variance.

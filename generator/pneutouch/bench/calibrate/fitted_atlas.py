@@ -1,11 +1,9 @@
-"""Values of the atlas at the measured travels and volumes, for many sets of parameters in one batch.
+"""The model of a fit: the atlas at measured travels and volumes, for many sets of parameters in one batch.
 
-Model discrepancy, common to all runs, and the error of the first contact of each run.
-
-Both are unknowns with a standard deviation, estimated with the parameters. The first is the model discrepancy of
-Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated
-parameter has too small an interval around a wrong value (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014,
-114007).
+Also the unknowns that many values share: the model discrepancy, common to all runs, and the error of each run's first
+contact. Both have a standard deviation and are estimated with the parameters. The model discrepancy is that of Kennedy
+and O'Hagan (J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated parameter has
+too small an interval around a wrong value (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014, 114007).
 """
 
 from dataclasses import dataclass
@@ -38,10 +36,11 @@ _NEWTON = 4
 
 
 def injected(slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume: Array) -> tuple[Array, Flags]:
-    """Pressures of s sensors after injected volumes (n,) and True where the atlas covers them, (s, n).
+    """Pressures of s sensors after injected volumes (n,), and True where the atlas covers them, (s, n) each.
 
     Solves (p + pa)(V(p) + Vd) = pa (V0 + Vd + dV), V the free dome's volume, for V: the injected volume rises with V
-    through the limit point, where a driven pressure would not. All nondimensional; ambient and dead (s,), by slices k.
+    through the limit point, where a driven pressure would not. All nondimensional. ``k``, ``ambient`` and ``dead`` are
+    (s,): each sensor's index in ``slices``, ambient pressure and dead volume.
     """
     s, n = k.size, volume.size
     content = ambient[:, None] * (REST_VOLUME + dead[:, None] + volume)
@@ -63,7 +62,7 @@ def injected(slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume:
 
 
 def free_pressure(slices: AtlasSlices, k: Index, nu: Array) -> tuple[Array, Array]:
-    """Pressure of the free dome at volumes nu and its slope by nu, (n,) each."""
+    """Pressure of the free dome and its slope by nu, (n,) each; nu is 0 at rest and 1 at the limit point."""
     apex = slices.free_apex(k, nu)
     point = slices.point(k, nu, apex[:, 0])
     # Along the free curve the plate rides on the apex.
@@ -71,12 +70,12 @@ def free_pressure(slices: AtlasSlices, k: Index, nu: Array) -> tuple[Array, Arra
 
 
 _GAP = 0.08
-"""Longest step of the plate in R0; where points are further apart, the press goes by steps between them."""
+"""Longest plate step as a share of R0; where measured points are further apart, steps between them are added."""
 
 
 @dataclass(frozen=True, slots=True)
 class FittedContact:
-    """Contact other than a plate without friction.
+    """Input of the solid's correction of the atlas, for a contact, wall or ring that the atlas does not cover.
 
     Attributes:
         centre: Sensor for which the solid's ratio is computed.
@@ -88,8 +87,8 @@ class FittedContact:
 
     @classmethod
     def of(cls, sensor: Sensor, chosen: CalibrationParameters, full: Array) -> "FittedContact | None":
-        """Contact of a sensor with all parameters at their coordinates ``full``, (5,); None for a plate without
-        friction, as in the atlas."""
+        """Correction of a sensor with all parameters at the coordinates ``full``, (5,); None where the atlas covers the
+        sensor as it is, which gives no ``chosen.frictions``."""
         if not chosen.frictions:
             return None
         modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
@@ -98,7 +97,7 @@ class FittedContact:
 
     @property
     def other_wall(self) -> bool:
-        """True if the wall has a law or a grade, which changes its inflation too."""
+        """True if the wall has a law or a grade: the solid then corrects injections too."""
         return self.centre.wall.law is not None or self.centre.wall.grade is not None
 
     def distance(self, other: "FittedContact") -> float:
@@ -118,8 +117,8 @@ class AtlasModel:
     """The atlas at ``points``. Parameter sets are (s, 5) coordinates, values (s, N) in the order of
     `ObservationPoints.values`.
 
-    For a contact other than a plate without friction, values of the atlas are multiplied by the solid's ratio of the
-    two contacts for the sensor ``contact.centre``. Raises InputError if the atlas does not cover the sensor,
+    With a ``contact``, the atlas's forces and rises are multiplied by the solid's ratio of the sensor
+    ``contact.centre`` to the one that the atlas covers. Raises InputError if the atlas does not cover the sensor,
     ComputationError where the solid cannot press it.
     """
 
@@ -142,7 +141,7 @@ class AtlasModel:
         self._between = np.linspace(0.0, deepest, int(np.ceil(deepest / _GAP)) + 1)[1:] * size if wide else np.zeros(0)
 
     def values(self, sets: Array) -> tuple[Array, Flags]:
-        """Values, and True where the model has them, (s, N) each. The last result is kept: fits often restart there."""
+        """Values, and True where the model has them, (s, N) each. The last result is kept for a repeated call."""
         key = sets.tobytes()
         if self._last is None or self._last[0] != key:
             self._last = key, *self._evaluated(sets)
@@ -226,8 +225,8 @@ TRAVEL = 3
 
 @dataclass(frozen=True, slots=True)
 class SharedUnknowns:
-    """Unknowns that many values share: ``columns`` (N, q), their effect at size 1, in N and MPa; ``kind`` (q,), an
-    index of `FLOOR`, or `TRAVEL`, whose columns already have their size."""
+    """Unknowns that many values share: ``columns`` (N, q), change of the values (N, MPa) by each unknown of size 1;
+    ``kind`` (q,), an index of `FLOOR`, or `TRAVEL`, whose columns already have their size."""
 
     columns: Array
     kind: Array
@@ -238,10 +237,10 @@ class SharedUnknowns:
 
 
 def shared_of(points: ObservationPoints) -> SharedUnknowns:
-    """Shared unknowns of points.
+    """Shared unknowns of the values of ``points``.
 
-    Each channel has one share of all its readings, whatever the pressure, and at each pressure a smooth share along the
-    travel; each curve has one error of its travel, which moves force and rise together."""
+    Each channel has one error that is a constant share of all its readings, and for each driving pressure errors that
+    are a smooth share along the travel. Each curve has one error of its travel, which moves force and rise together."""
     m, values, channels = points.travel.shape[1], points.values, points.channels
     travel = points.travel / points.travel.max(axis=1, initial=1e-9)[:, None]
     shape = _shape(
@@ -269,8 +268,8 @@ def shared_of(points: ObservationPoints) -> SharedUnknowns:
 def sizes_of(
     shared: SharedUnknowns, jacobian: Array, residual: Array, prior_weight: Array, pull: Array, floor: Array
 ) -> Array:
-    """Sizes (3,) that the residuals make most likely, the parameters integrated out (restricted likelihood: Patterson
-    and Thompson, Biometrika 58, 1971, 545-554); at least ``floor``.
+    """Most likely sizes (3,) of the model discrepancy for these residuals, the parameters integrated out (restricted
+    likelihood: Patterson and Thompson, Biometrika 58, 1971, 545-554); at least ``floor``.
 
     Rows are the values used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,);
     ``prior_weight`` (k,) are the prior weights of the parameters, ``pull`` (k,) their distances from the prior in
@@ -299,14 +298,14 @@ def sizes_of(
 
 
 def _unlikely(gram: Array, weight: Array) -> float:
-    """Minus twice the restricted log likelihood up to a constant; the last row of ``gram`` is the residuals'."""
+    """Minus twice the restricted log likelihood plus a constant; the last row of ``gram`` belongs to the residuals."""
     normal = gram[:-1, :-1] + np.diag(weight)
     right = gram[:-1, -1]
     return float(np.linalg.slogdet(normal)[1] + gram[-1, -1] - right @ np.linalg.solve(normal, right))
 
 
 def _shape(depth: Array) -> Array:
-    """Weights (N, nodes) of independent unit unknowns that make a smooth share of unit variance over a unit length."""
+    """Weights (N, nodes) of independent unit unknowns whose sum varies smoothly over depths (N,) from 0 to 1."""
     nodes = np.linspace(0.0, 1.0, _GAUSS_NODES)
 
     def alike(a: Array, b: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Goodness of the fit: residuals by run, and deviations that every run shares.
+"""Goodness of a fit: residuals of each run, and the correction of deviations that all runs share.
 
 The sensitivity of a soft dome hardly depends on modulus, wall and dead volume, so a fit of them does not remove the
 model's error in it. That error, as the runs show it, is corrected at the measured driving pressures and between them.
@@ -18,23 +18,23 @@ from pneutouch.results.calibration import MissRecord
 from pneutouch.units import KPA
 
 MISSED = 0.005
-"""Least residual over full scale that is called a miss: our choice, a few times the atlas's own error."""
+"""Least residual over full scale that is reported as a miss: our choice, a few times the atlas's own error."""
 
 _CHANCE = 0.001
-"""Probability that scatter between runs alone would show a miss at a point: our choice."""
+"""Probability that scatter between runs alone gives a miss at a point: our choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunResiduals:
-    """Residuals of one run, model less measured; arrays (n,), NaN if the model has no state. An injection has no
-    ``force``.
+    """Residuals of one run, model less measured; arrays (n,), NaN at points that the model does not reach. ``force`` is
+    empty for an injection.
 
     Attributes:
         label: Label of the run.
         driving_pressure_kPa: Driving pressure as the campaign names it, kPa; NaN for an injection.
         at: Indentation, mm; for an injection the volume, mm3.
         force, rise: Residuals, N and MPa.
-        force_scale, rise_scale: Greatest measured force and rise: full scale."""
+        force_scale, rise_scale: Full scale: greatest measured force (N, 1 for an injection) and rise (MPa)."""
 
     label: str
     driving_pressure_kPa: float
@@ -46,12 +46,12 @@ class RunResiduals:
 
     @property
     def force_error(self) -> float:
-        """Root mean square of the force residuals over full scale; NaN without any."""
+        """Root mean square of the force residuals over full scale; NaN without residuals."""
         return _rms(self.force) / self.force_scale if self.force.size else float("nan")
 
     @property
     def rise_error(self) -> float:
-        """Root mean square of the pressure residuals over full scale; NaN without any."""
+        """Root mean square of the pressure residuals over full scale; NaN without residuals."""
         return _rms(self.rise) / self.rise_scale
 
 
@@ -74,10 +74,10 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
 
 
 def misses(fit: CalibrationFit) -> list[MissRecord]:
-    """Stretches of travel where the runs at a driving pressure deviate from the model by more than their scatter.
+    """Stretches of travel where the runs at a driving pressure deviate from the model by more than scatter explains.
 
-    The scatter is pooled over pressures and travels, in shares of full scale; without repeated runs a deviation is only
-    compared with `MISSED`.
+    At most one stretch for each driving pressure and channel, around the greatest deviation. The scatter is pooled over
+    pressures and travels, in shares of full scale; without repeated runs a deviation only has to exceed `MISSED`.
     """
     runs = [run for run in residuals(fit) if run.force.size]
     deviations = []
@@ -93,7 +93,7 @@ def misses(fit: CalibrationFit) -> list[MissRecord]:
 
 
 def _on_one_grid(runs: list[RunResiduals], channel: str) -> tuple[Array, Array]:
-    """Travels of the run with the fewest points, and all runs' residuals there over full scale, (runs, n)."""
+    """Travels (n,) of the run with the fewest points, and residuals there over full scale, (runs, n)."""
     at = min((run.at for run in runs), key=len)
     rows = [
         np.interp(at, run.at, run.force / run.force_scale if channel == "force" else run.rise / run.rise_scale)
@@ -160,25 +160,25 @@ class ModelMisfit:
 
     @property
     def doubtful(self) -> bool:
-        """True if the model describes the runs poorly."""
+        """True if the model describes the runs poorly: `DOUBTFUL` or `DOUBTFUL_CHI` is exceeded."""
         return max(self.shares) > DOUBTFUL or self.chi_squared > DOUBTFUL_CHI
 
     @property
     def contradicted(self) -> bool:
-        """True if the fitted model does not describe the sensor: it is off by more than the greatest discrepancy that a
-        fit considers (`LARGEST`), or by more than that and the scatter explain."""
+        """True if the fitted model does not describe the sensor: the residuals of a channel exceed `LARGEST` of full
+        scale, or chi-squared per degree of freedom exceeds `CONTRADICTED_CHI`."""
         return max(self.shares) > LARGEST or self.chi_squared > CONTRADICTED_CHI
 
     @property
     def words(self) -> str:
-        """The misfit in words."""
+        """The misfit as text."""
         names = ("force", "pressure rise", "injection's pressure")
         off = ", ".join(f"{name} by {share:.1%}" for name, share in zip(names, self.shares, strict=True) if share)
         return f"{off} of full scale (root mean square), chi-squared per degree of freedom {self.chi_squared:.3g}"
 
 
 def misfit(fit: CalibrationFit, runs: Sequence[RunResiduals]) -> ModelMisfit:
-    """The misfit of a fit from the residuals of its runs (`goodness.residuals`)."""
+    """Misfit of a fit, from the residuals of its runs (`residuals`)."""
     curves = [run for run in runs if run.force.size]
     injected = [run for run in runs if not run.force.size]
     errors = (
@@ -198,7 +198,7 @@ same value is taken."""
 _LEAST_POINTS = 3
 
 _MOST_FREEDOM = 1e6
-"""Degrees of freedom of errors that do not include the scatter: as good as infinite."""
+"""Greatest number of degrees of freedom that is returned: as good as infinite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,12 +207,12 @@ class ResponseGap:
 
     Attributes:
         driving_pressures_kPa: Driving pressures, kPa, ascending.
-        force, sensitivity: Log ratios of the contact force and of the sensitivity.
+        force, sensitivity: Log ratios of the contact force and of the sensitivity, (n,).
         force_errors, sensitivity_errors: Their standard uncertainties: scatter of the runs, pooled over the pressures,
             and the least share that no residual shows (`FLOOR`).
         depth: Travel, mm, that all runs reached at the driving pressure with the deepest runs.
-        freedom: Degrees of freedom of these errors, the fewest there; 0 where no run was repeated and the scatter is
-            `ASSUMED_SCATTER`.
+        freedom: Degrees of freedom of these errors, the least over pressures; 0 where no run was repeated and the
+            scatter is `ASSUMED_SCATTER`.
     """
 
     driving_pressures_kPa: tuple[float, ...]
@@ -232,7 +232,7 @@ class ResponseGap:
 
 
 def response_gap(fit: CalibrationFit) -> ResponseGap | None:
-    """Gap between the runs of a fit and its model; None if no run has `_LEAST_POINTS` points that the model reaches."""
+    """Gap between the runs of a fit and its model; None if no run has `_LEAST_POINTS` points that the model covers."""
     p, size = fit.points, fit.points.there.size
     shape = p.there.shape
     use = fit.solution.use[:size].reshape(shape)
@@ -273,7 +273,7 @@ def scatter_errors(groups: list[Array]) -> tuple[Array, float]:
 
 
 def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array], use: Flags) -> tuple[float, float]:
-    """Logarithms of measured over modelled force, by least squares, and sensitivity."""
+    """Logarithms of measured over modelled force, by least squares, and of measured over modelled sensitivity."""
     force = float((measured[0] * model[0])[use].sum() / (model[0][use] ** 2).sum())
     ratio = _sensitivity(travel, *measured, use) / _sensitivity(travel, *model, use)
     return float(np.log(max(force, 1e-6))), float(np.log(max(ratio, 1e-6)))

@@ -1,6 +1,6 @@
 """Uncertainty of the estimates: runs differ by gain and zero, so the run is the unit of repetition, not the point.
 
-Errors that many values share (`discrepancy`) are unknowns next to the parameters: given them, runs are independent.
+Errors that many values share (`SharedUnknowns`) are unknowns next to the parameters: given these, runs are independent.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ LEAST_RUNS = 3
 LEVEL = 0.95
 
 _LEVERAGE = 0.9
-"""Share of the information in a direction above which a run shows no scatter there: our choice."""
+"""Share of a direction's information that one run gives, above which the scatter there is unknown: our choice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,13 @@ class Covariance:
     Attributes:
         matrix: Covariance, priors included, (k, k); NaN on a bound, and where neither data nor prior determine it.
         information: Information of the data alone, at the average scatter of the runs, (k, k).
-        freedom: Degrees of freedom of the scatter between runs, infinite without scatter between runs.
+        freedom: Degrees of freedom of the scatter between runs, infinite where too few runs are repeated to show it.
         share: Share of the data in each parameter's variance, (k,).
-        considered: Standard deviations added by each uncertain parameter not fitted, (k, 5); ``matrix`` includes them.
+        considered: Shift of each estimate by one standard deviation of each uncertain parameter not fitted, (k, 5); in
+            ``matrix``.
         even: Parameters that have a uniform prior, (5,).
-        runs: Runs with a point in the fit.
-        alone: For each parameter the number of the only run that determines it, -1 where several do, (k,).
-    """
+        runs: Number of runs and injections with a point in the fit.
+        alone: Number of the only run that determines each parameter, -1 where several do, (k,)."""
 
     matrix: Array
     information: Array
@@ -46,16 +46,16 @@ class Covariance:
 
     @property
     def clustered(self) -> bool:
-        """True if it includes the scatter between runs."""
+        """True if ``matrix`` includes the scatter between runs."""
         return bool(np.isfinite(self.freedom))
 
 
 class WeightedRows(NamedTuple):
     """Rows of a fit, scaled so that data and priors together have an information of 1 for each of the j unknowns.
 
-    residual: local residuals, (N,). jacobian: derivatives by free parameters and shared unknowns over ``scale``,
-    (N, j). use: True for the values that count, (N,). weight: prior weights over ``scale`` squared, (j,).
-    """
+    residual: local residuals, (N,). jacobian: derivatives by free parameters and shared unknowns, over ``scale``,
+    (N, j). use: True for values that count, (N,). weight: prior weights over ``scale``², (j,). scale: root of each
+    information, (j,)."""
 
     residual: Array
     jacobian: Array
@@ -70,8 +70,8 @@ class WeightedRows(NamedTuple):
 
 
 class RunScatter(NamedTuple):
-    """Scatter between runs: ``score`` the covariance of the gradient (k, k); ``held`` the projection on what a single
-    run determines, in coordinates of unit information (k, k); ``alone`` that run for each parameter, else -1 (k,)."""
+    """Scatter between runs: ``score`` the covariance of the gradient (j, j); ``held`` the projection on what a single
+    run determines, in coordinates of unit information (j, j); ``alone`` that run for each unknown, else -1 (j,)."""
 
     score: Array
     held: Array
@@ -79,12 +79,12 @@ class RunScatter(NamedTuple):
 
 
 def information(jacobian: Array) -> Array:
-    """Information of points of unit error, (k, k)."""
+    """Information matrix, (k, k), from derivatives (N, k) of values over their errors."""
     return np.asarray(jacobian.T @ jacobian)
 
 
 def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
-    """Scatter of the gradient between runs; the points of one run move together.
+    """Scatter of the gradient between runs; ``clusters`` (N,) is the run of each value.
 
     Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's
     residuals are too small because it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs
@@ -110,7 +110,7 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
 
 
 def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> float:
-    """Variance of the gradient between runs over that of independent points, mean over directions; at least 1."""
+    """Variance of the gradient between runs over that of independent points, mean over directions, at least 1."""
     free = np.flatnonzero(~solution.bound & (np.abs(solution.jacobian).max(axis=0) > 0))
     if not free.size or _freedom(problem, solution) < 1:
         return 1.0
@@ -172,7 +172,7 @@ def half_widths(estimate: Covariance) -> Array:
 
 
 def _half(deviation: float, bound: float) -> float:
-    """Half width of the 95 % interval of a normal error and a uniform one within +-``bound``."""
+    """Half width of the 95 % interval of a normal error of ``deviation`` plus a uniform one within +-``bound``."""
     from scipy.optimize import brentq
     from scipy.stats import norm
 
@@ -195,7 +195,7 @@ def _half(deviation: float, bound: float) -> float:
 
 
 def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
-    """Number of runs beyond the first at each driving pressure: their differences hold no error that all runs share."""
+    """Runs beyond the first at each driving pressure and beyond the first injection; 0 below `LEAST_RUNS`."""
     points = problem.model.points
     clusters = np.unique(points.clusters[solution.use])
     curves = clusters[clusters < points.group.size].astype(int)
@@ -213,7 +213,7 @@ def _rows(problem: LeastSquaresProblem, solution: LeastSquaresSolution, free: In
 
 
 def _root(normal: Array) -> Array:
-    """Symmetric root of the inverse of ``normal``."""
+    """Symmetric square root of the inverse of ``normal``."""
     values, vectors = np.linalg.eigh(normal)
     return np.asarray((vectors / np.sqrt(values)) @ vectors.T)
 
@@ -221,8 +221,8 @@ def _root(normal: Array) -> Array:
 def _at_least(score: Array, data: Array, normal: Array, held: Array, run_factor: float) -> Array:
     """Scatter ``score``, raised where it is less than that of independent points.
 
-    A direction that only one run determines shows none; there the run is assumed to scatter as the others on average.
-    """
+    A direction that one run alone determines (``held``) shows no scatter; there the average one of the others is
+    assumed."""
     root = _root(normal)
     least = root @ data @ root / run_factor + (1.0 - 1.0 / run_factor) * held
     seen, axes = np.linalg.eigh(root @ score @ root - least)

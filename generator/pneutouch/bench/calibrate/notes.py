@@ -22,10 +22,10 @@ GAIN = 0.01
 
 
 def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
-    """Shifts of the estimates, (k,) coordinates each, if the force and if the pressure were read 1 % too high; 0 on a
-    bound.
+    """Shifts of the estimates, two arrays (k,) in coordinates, if the force or the pressure were read 1 % too high; 0
+    for a parameter on a bound.
 
-    The gauge reads the driving pressure too.
+    A pressure read too high includes the driving pressure.
     """
     p, solution = fit.points, fit.solution
     size = p.there.size
@@ -38,7 +38,7 @@ def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
 
 
 def _shift(fit: CalibrationFit, residual: Array) -> Array:
-    """Step of the estimates for a change of the residuals in N and MPa."""
+    """Step of the estimates, (k,), for a change ``residual`` of the residuals, (N,) in N and MPa."""
     free = np.flatnonzero(~fit.solution.bound)
     change = np.where(fit.solution.use, residual / fit.problem.errors, 0.0)
     whole = fit.problem.whitened(np.column_stack([change, fit.solution.jacobian[:, free]]), fit.solution.use)
@@ -55,10 +55,10 @@ def _shift(fit: CalibrationFit, residual: Array) -> Array:
 def predict_held_out(
     observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
 ) -> HeldOutRecord:
-    """Leave out a driving pressure (kPa), fit the other runs, and predict it by that fit and its correction.
+    """Fit without the runs at a driving pressure (kPa), and predict these by that fit and its correction.
 
-    Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
-    few of its points to compare."""
+    Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model reaches
+    fewer than two points of a run."""
     known_kPa = observations.driving_pressures_kPa
     if driving_pressure_kPa not in known_kPa:
         measured = ", ".join(f"{p:g}" for p in known_kPa) or "none"
@@ -104,7 +104,7 @@ def predict_held_out(
 
 
 def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:
-    """Both sensitivities, root mean square and greatest errors over full scale; the origin belongs to both curves."""
+    """Sensitivity measured and predicted; errors over full scale: rms of force, of rise, greatest of both in turn."""
     x, f, r, mf, mr = (np.concatenate([[0.0], part[use]]) for part in (travel, force, rise, model_force, model_rise))
     measured_kPa_per_N, predicted_kPa_per_N = (float(lines(x, a, b / KPA).sensitivity) for a, b in ((f, r), (mf, mr)))
     df, dr = (mf - f)[1:] / np.abs(f).max(), (mr - r)[1:] / np.abs(r).max()
@@ -124,7 +124,7 @@ _MOVED = 0.2
 
 
 def amount(k: int, deviation: float) -> str:
-    """A deviation of parameter k in its coordinate, in words."""
+    """Text of a deviation of parameter k in its coordinate: in %, as a factor, in mL, in mm, or as a number."""
     if LOGARITHMIC[k]:
         return (
             f"{100 * np.expm1(deviation):.2g} %" if deviation < np.log(2.0) else f"a factor of {np.exp(deviation):.2g}"
@@ -141,7 +141,7 @@ def fit_notes(
     missed: Sequence[MissRecord],
     held_out: Sequence[HeldOutRecord],
 ) -> list[str]:
-    """The notes that belong to the numbers: at most one sentence of a kind."""
+    """Notes on a fit in words, at most one for each kind of remark."""
     estimates = _left_out(fit), _bounds(fit), _far(fit), _counted(fit) + _basis(fit)
     tests = _open(fit, identified), _tests(fit, identified, further)
     kinds = *estimates, *tests, _fitness(fit, missed), [_held(one) for one in held_out]
@@ -149,7 +149,7 @@ def fit_notes(
 
 
 def _counted(fit: CalibrationFit) -> list[str]:
-    """Sources that the intervals include in addition to the scatter."""
+    """Clauses on the sources of uncertainty that the intervals include beside the scatter, and on those left out."""
     used = np.unique(fit.points.channels[fit.solution.use])
     sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
     parts = [f"the intervals include the model discrepancy ({sizes})"]
@@ -200,7 +200,7 @@ def _bounds(fit: CalibrationFit) -> list[str]:
 
 
 def _far(fit: CalibrationFit) -> list[str]:
-    """Notes on estimates far from the design's value, which the priors keep away from the optimum of the data."""
+    """Notes on estimates far from the design's value; none for a fit without priors."""
     notes = []
     for place, k in enumerate(fit.parameters.fitted):
         away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.prior_spread[k]
@@ -278,7 +278,7 @@ def _times(gain: float) -> str:
 
 
 def _fitness(fit: CalibrationFit, missed: Sequence[MissRecord]) -> list[str]:
-    """Deviations of the model, one clause a pressure: the greatest."""
+    """Note on the model's deviations that all runs share: the greatest at each driving pressure."""
     parts = []
     for pressure_kPa in sorted({miss.driving_pressure_kPa for miss in missed}):
         miss = max((m for m in missed if m.driving_pressure_kPa == pressure_kPa), key=lambda m: abs(m.share))

@@ -16,23 +16,23 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
-"""The atlas's own error over full scale: medians of 500 presses at their worst state (docs/background/atlas.md)."""
+"""Error of the atlas over full scale: medians of 500 presses at their worst state (docs/background/atlas.md)."""
 
 READING = 0.05 * KPA
 """Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper
 gives only the resolution of its force sensor."""
 
 _RANGE = 0.99
-"""Share of the force sensor's range from which on a reading counts as clipped: our choice, the zero is subtracted."""
+"""Share of the force sensor's range at which a reading counts as clipped: our choice, as the zero is subtracted."""
 
 _AVERAGED = 100
-"""Greatest number of samples whose noise is taken to average out in a point: our choice, for noise is not white."""
+"""Greatest number of samples over which noise is assumed to average out: our choice, as noise is not white."""
 
 
 @dataclass(frozen=True, slots=True)
 class Injection:
     """Air pushed into the closed sensor from ambient pressure: injected volume (mm3, at ambient pressure) and gauge
-    pressure (MPa), (n,) each; ``noise`` is the standard deviation of a pressure, MPa."""
+    pressure (MPa), (n,) each; ``noise`` is the standard deviation of a pressure point, MPa."""
 
     label: str
     volume: Array
@@ -146,7 +146,7 @@ class ObservationPoints(NamedTuple):
 
 
 def points_of(observations: Observations) -> ObservationPoints:
-    """The arrays of observations. Raises InputError if there is nothing to fit."""
+    """Arrays of observations. Raises InputError for no or one point in all, a run without a point, or NaN."""
     if not observations.curves and not observations.injections:
         raise InputError(
             "calibrate: no curves and no injections; there must be at least one run of kind steps or injection"
@@ -187,14 +187,14 @@ def _curve(curve: MeasuredCurve, rig: Rig) -> tuple[Array, ...]:
 
 
 def clipped(curve: MeasuredCurve, rig: Rig) -> Flags:
-    """Points at the end of the force sensor's range, (n,), where its reading stops."""
+    """Flags (n,) of points at the end of the force sensor's range."""
     return np.asarray(np.abs(curve.force) >= _RANGE * rig.force_range_N)
 
 
 def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
-    """Standard errors of the runs' first contacts, mm, (c,), each the median over the first indentations of its run.
+    """Standard errors of the first contact of each run, mm, (c,): of the median over its first `EARLY` indentations.
 
-    The spread is pooled over all runs: from the few indentations of one run it would be far off either way.
+    The spread is pooled over all runs, as the few indentations of one run give a poor estimate; 0 where no run has two.
     """
     groups = [np.array([indent.onset for indent in curve.indents if indent.fitted])[:EARLY] for curve in curves]
     free = sum(max(onsets.size - 1, 0) for onsets in groups)
@@ -205,7 +205,7 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
 
 
 def _slopes(travel: Array, values: Array) -> Array:
-    """Slopes along each row, (c, m); zero at repeated travels, which are padding."""
+    """Slopes of values by travel along each row, (c, m), from the origin; zero at repeated travels (padding)."""
     slopes = np.zeros_like(values)
     for row, (x, y) in enumerate(zip(travel, values, strict=True)):
         at = np.concatenate([[0.0], np.unique(x)])

@@ -19,14 +19,14 @@ from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
 
 CALIPER = 0.05 / np.sqrt(3.0)
-"""Standard deviation of a soft wall's thickness by caliper, mm: even within 0.05 mm, our choice; the caliper itself is
-better, but the soft wall yields."""
+"""Standard deviation of a soft wall's thickness by caliper, mm: uniform within +-0.05 mm, our choice; the caliper
+itself is better, but the soft wall yields."""
 
 SYRINGE = 0.01
-"""Relative error of an injected volume, all volumes of a syringe alike: our choice, a gas-tight syringe."""
+"""Relative error of an injected volume, the same for all volumes of a syringe: our choice, a gas-tight syringe."""
 
 CAP = 10.0
-"""Standard deviation of the air under a rigid cap, mm3: our choice, 2 mm of a 2.5 mm bore."""
+"""Standard deviation of the air volume under a rigid cap, mm3: our choice, 2 mm of a 2.5 mm bore."""
 
 _STEPS = 12
 _RIDGE = 1e-8
@@ -40,8 +40,8 @@ class SuggestedTest:
     Attributes:
         what: The test in words.
         gain: Factor by which it shrinks the interval of the most uncertain combination.
-        half_width: Half widths of the 95 % intervals expected after the test, in the fitted coordinates, (k,).
-    """
+        half_width: Half widths of the 95 % intervals expected after the test, in the fitted coordinates, (k,); NaN on a
+            bound."""
 
     what: str
     gain: float
@@ -49,10 +49,10 @@ class SuggestedTest:
 
 
 def further_tests(fit: CalibrationFit, rated: float) -> list[SuggestedTest]:
-    """Candidate tests at no more than the rated pressure (MPa), the one that helps most first.
+    """Candidate tests at no more than the rated pressure (MPa), the one that helps most first; none without free
+    parameters.
 
-    Parameters on a bound are left as they are.
-    """
+    Parameters on a bound are not free: they are left as they are."""
     places = np.flatnonzero(~fit.solution.bound)
     if not places.size:
         return []
@@ -102,7 +102,7 @@ def _candidates(fit: CalibrationFit, rated: float) -> Iterator[tuple[str, Array]
 
 
 def _estimated(fit: CalibrationFit) -> float:
-    """`RATED_SHARE` of the least limit of the sensor as estimated, which a rating as designed may exceed, MPa."""
+    """Pressure (MPa) that the estimated sensor is rated for: `RATED_SHARE` of its least limit."""
     full = fit.full
     built = fit.sensor.replace(shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
     return RATED_SHARE * limits(built).lowest
@@ -144,7 +144,7 @@ def _planned(travel: Array, driving: Array, volume: Array) -> ObservationPoints:
 
 
 def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -> Array:
-    """Information of repeated runs at one pressure, which scatter as the measured runs do."""
+    """Information, (5, 5), of `REPETITIONS` runs at one pressure (MPa), with the scatter of the measured runs."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
     points = _planned(row, np.array([pressure]), np.zeros((0, 0)))
     values, derivatives = _evaluated(fit, full, points)
@@ -158,7 +158,7 @@ def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -
 
 
 def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
-    """Volume to inject from ambient for a pressure, mm3."""
+    """Volume to inject from ambient to reach a gauge pressure (MPa), mm3."""
     size, mu = fit.sensor.dome.inner_radius, float(np.exp(full[MODULUS]))
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     nodes = np.linspace(0.0, 1.0, 100)
@@ -170,7 +170,7 @@ def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
 
 
 def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
-    """Information of an injection in steps, with one relative error common to all its volumes."""
+    """Information, (5, 5), of an injection in steps, with one relative error common to all its volumes (mm3)."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
     points = _planned(np.zeros((0, 0)), np.zeros(0), row)
     values, derivatives = _evaluated(fit, full, points)
@@ -183,6 +183,6 @@ def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
 def _information(
     fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array
 ) -> Array:
-    """Information of values with errors ``noise``, (N, N), and with the model discrepancy of the fit."""
+    """Information, (5, 5), of values with error covariance ``noise``, (N, N), and the model discrepancy of the fit."""
     shared = shared_of(points.with_values(values)).sized(fit.sizes)
     return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

@@ -34,7 +34,7 @@ KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_off
 
 UNITS = ("MPa", "mm", "mL", "mm", "1")
 LOGARITHMIC = np.array([True, True, False, False, False])
-"""Parameters fitted in their logarithm: positive, and uncertain by a factor."""
+"""Flags of the parameters that are fitted as logarithms: positive, and uncertain by a factor."""
 _OUTSIDE = np.array([1.0, 1.0, ML, 1.0, 1.0])
 
 OFFSET_BOUND = 0.5
@@ -44,8 +44,8 @@ OFFSET_PRIOR = 0.05
 """Prior standard deviation of the contact offset, mm: our choice, the part of the first touch below the noise."""
 
 FRICTION_PRIOR = GRIPS / np.sqrt(12.0)
-"""Prior standard deviation of the coefficient of friction if it is fitted: our choice, wide enough for anything from
-none to grip."""
+"""Prior standard deviation of the friction coefficient if it is fitted: our choice, that of a uniform distribution from
+0 to `GRIPS`."""
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
@@ -58,15 +58,15 @@ class CalibrationParameters:
     """Coordinates of the five parameters: ln MPa, ln mm, mm3, mm, coefficient; (5,) arrays.
 
     Attributes:
-        fitted: Numbers of the fitted parameters, ascending.
-        start: Design values; parameters that are not fitted keep them.
+        fitted: Indices in `NAMES` of the fitted parameters, ascending.
+        start: Design values, also the centres of the priors; parameters that are not fitted keep them.
         low, high: Bounds.
         prior_spread: Standard deviations of the priors around ``start``.
         even: Priors that are uniform; the others are normal.
         step: Finite difference steps.
         origin: Origin of each prior.
         priors: True if the priors are used in the fit.
-        frictions: Coefficients at which the solid is solved; none where the contact is a plate without friction.
+        frictions: Friction coefficients at which the solid is solved; none where the atlas covers the sensor as it is.
     """
 
     fitted: tuple[int, ...]
@@ -82,7 +82,7 @@ class CalibrationParameters:
 
     @property
     def others(self) -> tuple[int, ...]:
-        """Numbers of the parameters that are not fitted but have a prior; none where the priors are not used."""
+        """Indices of the parameters that are not fitted but have a prior; none where priors are not used."""
         known = [k not in self.fitted and self.prior_spread[k] > 0.0 for k in range(len(NAMES))]
         return tuple(k for k in range(len(NAMES)) if known[k]) if self.priors else ()
 
@@ -104,7 +104,7 @@ def outside_value(k: int, coordinate: float) -> float:
 
 
 def parse_names(names: Iterable[str]) -> tuple[int, ...]:
-    """Numbers of parameters named. Raises InputError for an unknown, missing or repeated name."""
+    """Indices in `NAMES` of parameters, ascending. Raises InputError for an unknown or repeated name, or for none."""
     words = [name.strip() for name in names]
     for word in words:
         if word not in NAMES:
@@ -120,7 +120,7 @@ def parse_names(names: Iterable[str]) -> tuple[int, ...]:
 def parameters(
     sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = USUAL, *, priors: bool = True
 ) -> CalibrationParameters:
-    """Parameters of a sensor as designed. Raises InputError for unknown names."""
+    """Parameters of a sensor as designed, with ``names`` fitted. Raises InputError for unknown names."""
     recipe, size, numbers = shipped().recipe, sensor.dome.inner_radius, parse_names(names)
     friction = min(sensor.protocol.friction, GRIPS)
     rest = REST_VOLUME * size**3
@@ -142,7 +142,7 @@ def parameters(
 
 
 def _frictions(sensor: Sensor, *, fitted: bool) -> tuple[float, ...]:
-    """Coefficients at which the solid is solved: all where friction is fitted, else the design's and its neighbours."""
+    """Friction coefficients at which the solid is solved; none where the atlas needs no correction."""
     if fitted:
         return NODES
     if sensor.protocol.other_contact is None:
@@ -152,7 +152,7 @@ def _frictions(sensor: Sensor, *, fitted: bool) -> tuple[float, ...]:
 
 
 def _friction_prior(sensor: Sensor, *, fitted: bool) -> tuple[float, str]:
-    """Prior standard deviation of the coefficient of friction, and its origin; 0 where neither fitted nor stated."""
+    """Prior standard deviation of the friction coefficient, and its origin; 0 where not fitted and stated as 0."""
     stated = min(sensor.protocol.friction, GRIPS)
     if fitted:
         return float(FRICTION_PRIOR), f"normal, {FRICTION_PRIOR:.2g}: our choice, that of anything from 0 to {GRIPS:g}"

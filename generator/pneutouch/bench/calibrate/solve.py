@@ -14,7 +14,7 @@ from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 
 _POOR = 0.25
-"""Decrease over that expected below which a step counts as too long (Marquardt's rule)."""
+"""Decrease of the cost over the expected one below which a step counts as too long (Marquardt's rule)."""
 _ROUNDS = 60
 _DAMPING = 1e-3
 _MOST = 1e9
@@ -22,12 +22,12 @@ _SETTLED = 1e-4
 """Least decrease of the sum of squares for which the search goes on, a hundredth of a standard deviation. The criterion
 is the sum, not the step: along an undetermined direction steps stay long."""
 _MOST_LOST = 0.5
-"""Share of a run's points above which a step that loses them is too long: our choice; else runs could vanish unseen."""
+"""Greatest share of a run's points that a step may lose: our choice; else runs could vanish unseen."""
 
 
 @dataclass(frozen=True, slots=True)
 class LeastSquaresSolution:
-    """Least squares solution: the point with the least sum of squares; (k,) fitted coordinates, N values.
+    """Point with the least sum of squares, for k fitted coordinates and N values.
 
     Attributes:
         at: Coordinates of the fitted parameters.
@@ -37,8 +37,7 @@ class LeastSquaresSolution:
         model: Values of the model, (N,).
         use: Points that were used, (N,).
         bound: Parameters on a bound that would go beyond it, (k,).
-        rounds: Steps taken.
-    """
+        rounds: Steps taken."""
 
     at: Array
     residual: Array
@@ -51,8 +50,8 @@ class LeastSquaresSolution:
 
 
 class LeastSquaresProblem:
-    """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself,
-    ``shared`` (N, q) the contributions of unknowns of unit variance to many of them together."""
+    """Residuals and derivatives; ``errors`` (N,) are the independent standard deviations of the values, ``shared``
+    (N, q) the contributions of unknowns of unit variance that act on many values together."""
 
     def __init__(self, model: AtlasModel, chosen: CalibrationParameters, errors: Array, shared: Array) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
@@ -63,7 +62,7 @@ class LeastSquaresProblem:
         self.weight: Array = prior_spread**-2.0 if chosen.priors else np.zeros(len(fitted))
 
     def look(self, at: Array) -> tuple[Array, Array, Array, Flags]:
-        """Residuals (N,), derivatives (N, k), values (N,), and where the model has all of them; one batch."""
+        """Residuals (N,), derivatives (N, k) and values (N,) at ``at``, and flags (N,) of values that the model has."""
         # Differences point inwards where the bound is near.
         step = np.where(at + self.step <= self.high, self.step, -self.step)
         sets = self.chosen.full(np.vstack([at, at + np.diag(step)]))
@@ -74,15 +73,15 @@ class LeastSquaresProblem:
         return residual, ((scaled[1:] - scaled[0]) / step[:, None]).T, values[0], known
 
     def lost(self, use: Flags, known: Flags) -> bool:
-        """True if too many points of a run in ``use`` are not ``known``."""
+        """True if a run has lost more than `_MOST_LOST` of its values in ``use``: those not in ``known``."""
         clusters = self.model.points.clusters
         before = np.bincount(clusters[use])
         after = np.bincount(clusters[use & known], minlength=before.size)
         return bool((after < (1 - _MOST_LOST) * before).any())
 
     def whitened(self, rows: Array, use: Flags) -> Array:
-        """Columns (n + q, j) with the scalar products of the columns of ``rows`` (N, j) weighted by the inverse
-        covariance.
+        """Columns (n + q, j) whose scalar products are those of the columns of ``rows`` (N, j), weighted by the inverse
+        covariance of the n values in ``use``.
 
         The first n entries of a column are its residual after the best-fitting shared unknowns b, the last q are b."""
         shared, seen = self.shared[use], rows[use]
@@ -90,14 +89,15 @@ class LeastSquaresProblem:
         return np.vstack([seen - shared @ best, best])
 
     def cost(self, residual: Array, use: Flags, at: Array) -> float:
-        """Sum of squares, priors included."""
+        """Sum of squares of whitened residuals and of distances from the priors."""
         return float((self.whitened(residual[:, None], use) ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
 
 
 def solve(problem: LeastSquaresProblem, start: Array) -> LeastSquaresSolution:
-    """The least sum of squares from ``start``, (k,). Raises ComputationError if the search does not end.
+    """Solution with the least sum of squares, searched from ``start``, (k,).
 
-    Points outside the model are left out during the search; those that are inside at its end are included again.
+    Points outside the model are left out during a search; one that is inside at its end is included in the next. Raises
+    ComputationError if no point is inside at the start or the search does not end.
     """
     at = np.clip(start, problem.low, problem.high)
     rounds = 0
@@ -158,7 +158,7 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
 def _step(
     problem: LeastSquaresProblem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
 ) -> tuple[Array, Flags, float]:
-    """Damped step, (k,), flags of the parameters that it holds on their bounds, and its expected decrease of cost."""
+    """Damped step, (k,), flags of the parameters held on a bound, and the expected decrease of the cost."""
     whole = problem.whitened(np.column_stack([residual, jacobian]), use)
     r, j = whole[:, 0], whole[:, 1:]
     slope = j.T @ r + problem.weight * (at - problem.centre)
