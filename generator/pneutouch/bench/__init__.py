@@ -1,1 +1,1 @@
-"""Evaluation of measured data into the figures that predictions have."""
+"""Measured data: curves and figures of runs, calibration, coupons, tensile tests, and simulated records."""

@@ -1,4 +1,4 @@
-"""Pucks and dumbbells: hardness, density and shear modulus of a resin, and the modulus of mixes of two."""
+"""Pucks and dumbbells: hardness, density and shear modulus of a resin, and moduli of mixes of two resins."""
 
 import math
 from collections.abc import Sequence
@@ -22,19 +22,19 @@ _SECANT = 0.1
 _LEAST_POINTS = 3
 
 _FAR_SHORE = 25.0
-"""Points off the shipped hardness beyond which another resin may have been measured: our choice. Makers state ranges of
-3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
+"""Difference from the shipped hardness, in points, beyond which a note asks for another resin: our choice. Makers state
+ranges of 3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
 
 _MODULI = (0.01, STIFFEST_ELASTOMER_MPA)
 """Range of moduli, MPa, outside which a reading is wrong: our choice; the shipped elastomers have 0.17 to 5.33."""
 
 _FAR_MODULUS = 5.0
-"""Factor from the shipped shear modulus beyond which a note is given: our choice; published estimates of one resin
-differ by a factor of 3 (TangoPlus.toml)."""
+"""Ratio to the shipped shear modulus, or its inverse, beyond which a note is given: our choice; published estimates of
+one resin differ by a factor of 3 (TangoPlus.toml)."""
 
 
 def puck(name: str, material: Material, measured: Puck, source: ReadingSource, results: CouponFindings) -> None:
-    """Add hardness and density of a resin. Raises InputError for a density that no resin has."""
+    """Add hardness and density of a resin to ``results``. Raises InputError for a density that no resin has."""
     for key, scale in (("shore_a", "Shore A"), ("shore_d", "Shore D")):
         readings = getattr(measured, key)
         if readings:
@@ -74,7 +74,7 @@ def _compare_hardness(
 
 
 def _one_year(name: str, material: Material, fresh: float, results: CouponFindings) -> None:
-    """Keep the published change in a year: with another fresh hardness the old value would mean another ageing."""
+    """Add the one-year hardness as the measured one plus the published change, so that the ageing stays the same."""
     before, aged = material.shore_a, material.shore_a_one_year
     if before is None or aged is None:
         return
@@ -96,7 +96,7 @@ def _add(
 
 @dataclass(frozen=True, slots=True)
 class DumbbellModuli:
-    """Results of dumbbells: moduli of the specimens, their standard deviation, and the method as stated in a source."""
+    """Dumbbells, MPa: mean shear modulus, moduli, spread, their errors, secant Young's moduli; and the method."""
 
     over: Mean
     moduli: tuple[float, ...]
@@ -128,7 +128,7 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
 
 
 def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingSource, results: CouponFindings) -> None:
-    """Add the shear modulus of dumbbells. Raises InputError for too few specimens or points or a rigid material."""
+    """Add the shear modulus of dumbbells to ``results``. Raises InputError for readings that cannot be used."""
     where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
         raise InputError(f"{material.label} is rigid", file=where, remedy="die C is for an elastomer")
@@ -169,7 +169,7 @@ def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, result
 
 
 def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
-    """Raise InputError unless forces rise with extension; a coarse gauge may show one force twice, not throughout."""
+    """Raise InputError unless forces rise with extension; neighbours may be equal, the first and last not."""
     points = sorted(zip(specimen.extension_mm, specimen.force_N, strict=True))
     pairs = [*pairwise(points), (points[0], points[-1])]
     for k, ((before, lower), (after, higher)) in enumerate(pairs, start=1):
@@ -181,7 +181,7 @@ def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
 
 
 def _fit(specimen: DumbbellSpecimen, most: float, where: str) -> tuple[float, float, float | None]:
-    """Shear modulus, its standard error, and the secant Young's modulus at 10 % strain, MPa."""
+    """Shear modulus, its standard error, secant Young's modulus at 10 % strain (None if not reached), MPa."""
     _check_rising(specimen, where)
     area = float(np.median(specimen.width_mm) * np.median(specimen.thickness_mm))
     stretch = 1 + np.array(specimen.extension_mm) / specimen.gauge_length_mm
@@ -222,7 +222,7 @@ class MixModulus:
     how: str
 
     def point(self, source: ReadingSource) -> MixingPoint:
-        """The point of a mixing curve; the curve's file is checked as a whole."""
+        """Point of a mixing curve, not validated: the curve's file is checked as a whole."""
         return MixingPoint.model_construct(
             fraction=self.fraction,
             shear_modulus_MPa=rounded(self.modulus),
@@ -234,11 +234,11 @@ class MixModulus:
 def stiffness(
     pair: str, soft: Material, stiff: Material, measured: Sequence[MixedCoupons], source: ReadingSource
 ) -> list[MixModulus]:
-    """Modulus of every fraction that was measured.
+    """Modulus of each measured fraction, in ascending order.
 
-    By its dumbbells, else by its hardness: Gent's relation (1958) is used only for ratios, so the modulus is that of
-    the soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set. Raises
-    InputError for readings that cannot be used, and where the modulus falls with the fraction."""
+    From dumbbells, else from hardness: Gent's relation (1958) is used only for ratios, so the modulus is that of the
+    soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set. Raises
+    InputError for readings that cannot be used, and where the modulus does not rise with the fraction."""
     where = f"{source.where}: mixing.{pair}"
     moduli, by_hardness = [], []
     for k, one in enumerate(measured, start=1):
@@ -260,7 +260,7 @@ def stiffness(
 
 @dataclass(frozen=True, slots=True)
 class _Base:
-    """The soft resin: its hardness in this set, its modulus with spread, and the origin of the modulus."""
+    """The soft resin: its hardness in this set, its modulus with standard deviation (MPa), and the modulus's origin."""
 
     shore: Mean
     modulus: float

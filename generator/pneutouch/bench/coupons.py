@@ -1,4 +1,4 @@
-"""Results of measured coupons: quantities of profiles, figures and notes; of gauges, step blocks, caps and plugs."""
+"""Results of coupons: changes of profiles, figures and notes from gauges, step blocks, leak caps and plugs."""
 
 import datetime
 import math
@@ -37,7 +37,7 @@ class ProfileChange:
 
 @dataclass
 class CouponFindings:
-    """Changes, figures and notes, collected coupon by coupon."""
+    """Changes of profiles, figures and notes, collected coupon by coupon."""
 
     changes: list[ProfileChange] = field(default_factory=list)
     figures: list[MeasuredFigure] = field(default_factory=list)
@@ -77,11 +77,11 @@ _INSTRUMENT = 0.01
 """Resolution of a caliper, mm; no accuracy is claimed below it."""
 
 _SLIP = 0.1
-"""A length of the block that is off its nominal by more than this share counts as a writing error."""
+"""Relative deviation from nominal above which a length of the step block counts as a writing error."""
 
 _FINE_SLIP, _FINE_SLIP_MM = 0.5, 0.3
-"""Differences from nominal, relative and in mm, above both of which a wall, pin, hole or slot counts as a writing error
-too: our choice, several times the tolerance that vendors state for small features."""
+"""Deviations from nominal, relative and in mm; a wall, pin, hole or slot above both counts as a writing error: our
+choice, several times the tolerance that vendors state for small features."""
 
 _ROUNDING = 1e-9
 """Tolerance in comparisons of lengths, mm."""
@@ -96,7 +96,7 @@ _SMALLEST = MappingProxyType(
         "gap_mm": ("slot", ("elastomer", "rigid")),
     }
 )
-"""Row of the gauge and kinds of material behind each smallest feature of a printer profile."""
+"""For each smallest feature of a printer profile, the row of the gauge and the kinds of material that give it."""
 
 MeasuredGauges = Sequence[tuple[str, Material, FeatureGauge]]
 """Gauges of one printer: name of the material, the material and the readings."""
@@ -105,7 +105,7 @@ MeasuredGauges = Sequence[tuple[str, Material, FeatureGauge]]
 def gauges(
     name: str, printer: Printer, measured: MeasuredGauges, source: ReadingSource, results: CouponFindings
 ) -> None:
-    """Add accuracy, hole undersize and smallest features of a printer. Raises InputError for sizes not on the gauge."""
+    """Add a printer's accuracy, hole undersize and smallest features. Raises InputError for unusable readings."""
     for material_name, material, gauge in measured:
         _check_sizes(gauge, material, f"{source.where}: gauge.{name}.{material_name}")
     _accuracy(name, measured, source, results)
@@ -191,7 +191,7 @@ def _smaller(hole: GaugeSize, where: str) -> float:
 
 
 def smallest_sound(sizes: Sequence[GaugeSize]) -> float | None:
-    """The smallest size that is sound together with all larger ones, mm; None if the largest is not sound."""
+    """Smallest size that is sound together with all larger judged ones, mm; None if there is none."""
     least = None
     for size in sorted(sizes, key=lambda size: -size.nominal_mm):
         if size.sound is False:
@@ -209,7 +209,7 @@ def _least(
     source: ReadingSource,
     results: CouponFindings,
 ) -> None:
-    """Add the smallest feature of a kind; the worst of several gauges counts."""
+    """Add the smallest feature ``key`` of a printer: the largest of those that several gauges give."""
     row, _ = _SMALLEST[key]
     leasts = [smallest_sound(sizes) for sizes in judged]
     if any(least is None for least in leasts):
@@ -229,7 +229,7 @@ _VOLUME_ROUNDING = 1e-9
 
 
 def leak(name: str, cap: LeakCap, accuracy_kPa: float, source: ReadingSource, results: CouponFindings) -> None:
-    """Add the leak rate, kPa/min. Raises InputError if pressure rises by more than the gauge's ``accuracy_kPa``."""
+    """Add the leak rate, kPa/min, to ``results``. Raises InputError if a pressure rises by over ``accuracy_kPa``."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
         if rise > accuracy_kPa + _VOLUME_ROUNDING:
@@ -256,7 +256,7 @@ def volume(
     source: ReadingSource,
     results: CouponFindings,
 ) -> None:
-    """Add the dead volume in mL by Boyle's law. Raises InputError if the cap's pressures are missing or contradict."""
+    """Add the dead volume in mL by Boyle's law. Raises InputError unless the cap's pressures exceed the plug's."""
     cavity = cavity_measured(CouponContext(scene.connector_material, scene), plug)
     results.figure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count)
     if not plug.pressure_kPa:
@@ -283,7 +283,7 @@ def volume(
 
 
 def cavity_measured(context: CouponContext, plug: VolumePlug) -> Mean:
-    """The cavity's volume in mL: weighed, or as drawn with the printer's accuracy on its diameter and height."""
+    """Volume of the plug's cavity in mL: by weighed water, or as drawn, with the printer's accuracy as error."""
     if plug.water_g:
         water = mean(plug.water_g)
         return Mean(water.value / WATER, water.spread / WATER, water.count)

@@ -1,4 +1,4 @@
-"""Curve of a run from its blocks: points read at the ends of holds, or the loading of a run without holds."""
+"""Curve of a run from its blocks: one point for each hold, or the loading of a run without holds."""
 
 import math
 from collections.abc import Sequence
@@ -31,22 +31,22 @@ ALIKE_DEEP = 0.95
 """Share of the deepest loading that others must reach to be averaged with it: our choice."""
 
 LOADING_POINTS = 25
-"""Points of the loading of a loop or a relaxation run: our choice, about twice as many as the stairs have."""
+"""Points of the curve of a loop or a relaxation run: our choice, about twice as many as steps have."""
 
 _BEYOND_TRAVEL = 1.05
 
 
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
-    """The curve of a run with a plate; its first point is the origin.
+    """Curve of a run with a plate; its first point is the origin.
 
     A run without a stated kind has the kind that its record shows. Steps and saturation: one point for each stay,
     sorted by depth. Loop, relaxation and a press by hand: the loading, averaged over the cycles, at `LOADING_POINTS`
-    even depths, or forces by hand. A force or rise that falls as the sensor is pressed stays negative (see
-    `run_checks.check_plausible`). Noise is that of single samples without contact, from the spread within blocks and
-    that between their means about a straight line; drift is the slope before the first contact.
+    even depths, or forces by hand, where the indentation is NaN. A force or rise that falls as the sensor is pressed
+    stays negative (see `run_checks.check_plausible`). Noise is that of single samples without contact, from the spread
+    within blocks and between their means about a line; drift is the pressure's slope before contact.
 
-    Raises InputError if the plate does not move or moves backwards, or there is no contact.
-    """
+    Raises InputError for a leak or injection, a plate that never moves or moves backwards, no contact or no usable
+    press."""
     if run.kind in ("leak", "injection"):
         raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)
     travels = _travel(blocks, rig)
@@ -97,7 +97,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
 
 
 def _without_spikes(blocks: Blocks) -> Blocks:
-    """Blocks without those in which a channel reads a spike, for a moment, that no plate makes."""
+    """Blocks without those in which a channel reads a spike; all blocks if every one has a spike."""
     clean = np.ones(blocks.time.size, bool)
     for spike in (one for one in blocks.warnings if one.kind == "spike" and not one.used):
         clean &= (blocks.time < spike.start) | (blocks.time > spike.end)
@@ -108,7 +108,7 @@ def _without_spikes(blocks: Blocks) -> Blocks:
 
 
 def _by_force(blocks: Blocks) -> Blocks:
-    """Blocks of a press by hand with the force as position: the travel is unknown, and loadings are found by force."""
+    """Blocks of a press by hand with force as position. Raises InputError if the force never changes or falls."""
     if np.ptp(blocks.force) <= SURELY * float(np.median(blocks.force_spread)):
         raise InputError(
             f"the force never changes: from {blocks.force.min():.3g} to {blocks.force.max():.3g} N",
@@ -152,7 +152,7 @@ def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
 def _kept(
     blocks: Blocks, indentations: RunIndentations, touched: list[int], *, steps: bool
 ) -> tuple[list[int], Warnings]:
-    """Indentations that can be used, and the reasons against the others; with ``steps`` only those with a stay."""
+    """Indices of the usable indentations, and warnings about the others; ``steps``: a stay is required."""
     kept, warnings = [], []
     for k in touched:
         indent, part = indentations.indents[k], indentations.parts[k]
@@ -179,7 +179,7 @@ def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, 
 
 
 def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array]:
-    """Indentation, force and rise of the blocks of a loading, from contact to the deepest point."""
+    """Indentation (mm), force (N) and rise (MPa) of loading k, from contact to the deepest point, (n,) each."""
     part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
     start = int(np.searchsorted(blocks.time, indent.contact))
     end = _deepest(blocks, part) + 1
@@ -188,7 +188,7 @@ def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Arr
 
 
 def _deepest(blocks: Blocks, part: Excursion) -> int:
-    """Block at which the loading ends: the first at the depth of a stay, else the deepest."""
+    """Index of the block at which a loading ends: the first at the depth of its stay, else the deepest."""
     begin, end = part.hold
     place = blocks.position[begin:end]
     # A quick turn has one deepest block; a slow one many, of which noise must not choose.
@@ -197,7 +197,7 @@ def _deepest(blocks: Blocks, part: Excursion) -> int:
 
 
 def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:
-    """Loadings that reach `ALIKE_DEEP` of the deepest one, for averaging, and warnings about the others."""
+    """Indices in ``kept`` of loadings that reach `ALIKE_DEEP` of the deepest, and warnings about the others."""
     ends = [float(loading[0].max()) for loading in loadings]
     deep = [k for k, end in zip(kept, ends, strict=True) if end >= ALIKE_DEEP * max(ends)]
     why = f"left out of the average: it ends before {ALIKE_DEEP:.0%} of the deepest"
@@ -206,7 +206,7 @@ def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndenta
 
 
 def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
-    """Loadings at even depths from the origin, averaged."""
+    """Mean loading: depths, forces and rises at even depths from the origin, (n,) each."""
     depth = np.linspace(0.0, min(float(loading[0].max()) for loading in loadings), LOADING_POINTS + 1)
     curves = np.zeros((2, len(loadings), depth.size))
     for k, (place, force, rise) in enumerate(loadings):
@@ -233,17 +233,17 @@ def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[
 
 
 def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]:
-    """Slope of the pressure over the last third of the first stretch without contact, and its standard error.
+    """Slope of the pressure (MPa/s) over the last third of the first stretch without contact, and its standard error.
 
-    There a reset is over and nothing was pressed yet: after an indentation the wall still recovers.
-    """
+    There a reset is over and nothing was pressed yet: after a press the wall still recovers. Too few blocks: infinite
+    error."""
     start, end = indentations.parts[0].clear
     base = baseline(blocks, end - max((end - start) // 3, 1), end)
     return base.slope[1], math.sqrt(slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf
 
 
 def _noise(bases: Sequence[Baseline], channel: int) -> float:
-    """Noise of a channel: scatter of single samples about a straight line, pooled over the stretches."""
+    """Noise of a channel (0 force, 1 pressure): scatter of samples about a straight line, pooled over stretches."""
     count = np.array([max(base.end - base.start - 2, 1) for base in bases], float)
     variance = np.array([base.between[channel] + base.within[channel] for base in bases])
     return float(np.sqrt(count @ variance / count.sum()))

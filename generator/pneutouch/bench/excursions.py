@@ -1,4 +1,4 @@
-"""The plate's excursions: clear, going in, staying, coming out, by its position alone; and the kind of run they are."""
+"""Excursions of the plate into the sensor, found from its position alone, and the kind of run they make up."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import RunKind
 
 NOISE = 5.0
-"""Standard deviations of the position within which the plate is taken to stay: a false alarm in a million."""
+"""Standard deviations of the position within which the plate counts as still: one false alarm in a million."""
 
 TURN = 0.05
 """Share of the whole travel by which the plate must turn back to begin another indentation. The paper's smallest
 indentation (0.5 mm of 6.9 mm, and the clearance) is three times as long."""
 
 NEAR, STAY = 0.02, 0.005
-"""Shares of the travel: of the whole run's for overshoot at the deep end, and of an indentation's for the hold."""
+"""Tolerances of a stay: overshoot as a share of the run's whole travel, and deviation as a share of the indentation."""
 
 WIDE, FEW = 0.05, 8
 """Share of the travel, and number of blocks: with fewer than `FEW` blocks at the clear end, as in a loop without rest,
-those within `WIDE` of it count."""
+blocks within `WIDE` of that end are taken."""
 
 _LEAST_SHARE = 20.0
-"""Travel of a record, in standard deviations of the position, above which the plate counts as moving."""
+"""Least travel of a record, in standard deviations of the position, at which the plate counts as moving."""
 
 _ACTIVE = 5.0
-"""Position is reversed where the force varies so many times more at its low end than at its high end."""
+"""Ratio of the force's variation at the low end of the position to that at the high end, above which it is reversed."""
 
 _MOVES = 0.2
 """Share of its greatest speed from which on the plate is taken to move."""
@@ -43,18 +43,18 @@ _LINGERS = 4.0
 """Least ratio of the time at a stay on the way in to the time at the other places of the way: our choice."""
 
 _SCATTERED = 1.5
-"""Greatest ratio of blocks from a stay's first to its last to blocks at its depth: above it the plate came twice."""
+"""Greatest ratio of blocks from a stay's first to its last to blocks at its depth; above it the plate came twice."""
 
 LONG = 5.0
-"""Seconds from which a stay at one depth is a relaxation run, if it is longer than the way in: our choice."""
+"""Seconds above which a stay at one depth, if also longer than the way in, is a relaxation: our choice."""
 
 
 class Excursion(NamedTuple):
     """One loading and unloading, or one step of a loading in steps; block numbers, ends exclusive.
 
-    ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` where
-    the unloading ends (the next clear stretch, or the record). ``held``: the plate stays at the deep end, and does not
-    just turn. Steps of one loading share ``clear`` and ``out``.
+    ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` the
+    end of the unloading (the next clear stretch, or the end of the record). ``held`` is True if the plate stays at the
+    deep end and False if it just turns. Steps of one loading share ``clear`` and ``out``.
     """
 
     clear: tuple[int, int]
@@ -64,15 +64,15 @@ class Excursion(NamedTuple):
 
 
 def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tuple[list[Excursion], bool]:
-    """All loadings and unloadings, and True if the record begins with the sensor pressed (that press is left out).
+    """All loadings and unloadings, and True if the record begins with the sensor pressed; that press is left out.
 
     With ``steps`` a loading gives one excursion for each of its stays. ``turn`` is the share of the whole travel by
-    which the plate must turn back to begin another.
+    which the plate must turn back before another excursion can begin.
 
     No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
-    that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
-    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of the
-    sensor when it presses."""
+    that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples matter
+    little: differences of neighbours only give the noise and the direction. Raises InputError if the plate does not
+    move, or moves out of the sensor when it presses."""
     place = smoothed(blocks.position)
     noise, span = position_noise(blocks.position), float(np.ptp(place))
     if span <= _LEAST_SHARE * noise or place.size < FEW:
@@ -116,7 +116,7 @@ def position_noise(position: Array) -> float:
 
 
 def smoothed(values: Array) -> Array:
-    """Running median of three: a single wild position is no turn."""
+    """Running median of three, so that a single wild value makes no turn; the same shape."""
     if values.size < 3:
         return values
     inner = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
@@ -141,7 +141,7 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
 
 
 def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
-    """Turning points with at least ``least`` mm between neighbours, in order: block, and True for a high one."""
+    """Turning points with at least ``least`` mm between neighbours, in order: block number, and True for a deep one."""
     turns: list[tuple[int, bool]] = []
     values = place.tolist()
     low = high = 0
@@ -164,7 +164,7 @@ def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
 
 def _stay(place: Array, span: float, noise: float) -> tuple[int, int]:
     """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last. It may
-    overshoot by a share of the run's whole travel, ``span``."""
+    overshoot by `NEAR` of the run's whole travel ``span`` (mm)."""
     top, low = float(place.max()), float(place[0])
     level = float(np.median(place[place >= top - max(NEAR * span, NOISE * noise)]))
     at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))
@@ -222,8 +222,8 @@ def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:
 
 
 def kind_of(blocks: Blocks, parts: list[Excursion]) -> RunKind:
-    """The kind of a run with a plate, by the excursions that touch: steps where the plate stays at several depths, a
-    relaxation where it stays long at one, else a loop."""
+    """Kind of a run by those of its excursions that touch: steps where the plate stays at several depths, a relaxation
+    where it stays long at one, else a loop."""
     held = [one for one in parts if one.held]
     if 2 * len(held) < len(parts) or not parts:
         return "loop"

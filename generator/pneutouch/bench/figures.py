@@ -1,4 +1,4 @@
-"""Figures of a run, by the same `mechanics.response` as those of predicted curves, and of groups of runs, pooled."""
+"""Figures of single runs, by the same `mechanics.response` as those of predictions, and pooled over groups of runs."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -19,10 +19,10 @@ Pooled = Literal["mean", "within", "between"]
 
 @dataclass(frozen=True, slots=True)
 class FigureDefinition:
-    """Definition of a figure of a sensor: key, name, unit, and how the values of several runs become one (``pooled``).
+    """Definition of a figure: key, name, unit, digits, and how values of several runs become one (``pooled``).
 
-    ``reading`` is the relative bias that the evaluation itself may have, alike in all runs; the interval includes it.
-    """
+    ``of`` is the key of the figure whose values are pooled, if not its own; ``reading`` the relative bias of the
+    evaluation, alike in all runs and part of the interval."""
 
     key: str
     name: str
@@ -72,8 +72,8 @@ RESOLVED = 3.0
 """Resolution in standard deviations of the noise: the limit of detection of IUPAC (Gold Book, L03540)."""
 
 _CURVE, _GAP = 8, 4
-"""Numbers of coefficients of a loop's middle line and of the gap between its branches, as polynomials in the root of
-the force (closer to travel than the force is): the fewest that follow the loops of the solid model."""
+"""Numbers of coefficients of a loop's middle line and of the gap between its branches, polynomials in the root of the
+force, which is nearer to the travel than the force: the fewest that follow the loops of the solid model."""
 
 _LEAST_SAMPLES = 40
 
@@ -103,7 +103,7 @@ _GRID = 200
 
 
 def run_figures(curve: MeasuredCurve) -> dict[str, float]:
-    """The figures that one run gives, by key; those it does not determine are left out."""
+    """Figures of one run, by key; those that it does not determine are left out."""
     values: dict[str, float] = {}
     kind = curve.run.kind
     if len(curve.force) > 2:
@@ -129,7 +129,7 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
 
 
 def line_figures(got: Figures[float]) -> dict[str, float]:
-    """Figures of a loading curve by key of `FIGURES`; the saturation force only if it is finite."""
+    """Figures of a loading curve by key of `FIGURES`; without a saturation force if it is not finite."""
     return {
         SENSITIVITY_KEY: got.sensitivity,
         "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
@@ -142,9 +142,9 @@ def line_figures(got: Figures[float]) -> dict[str, float]:
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:
-    """Hysteresis of all cycles, percent, from fitted branches: the greatest difference of raw ones would be noise.
+    """Hysteresis of all cycles, percent, from fitted branches, as the greatest difference of raw ones would be noise.
 
-    Both branches are fitted at once: a middle line, and a gap that closes at the greatest force.
+    Both branches are fitted at once: a middle line, and a gap that closes at the greatest force. Empty for few samples.
     """
     sides = [(1.0, *cycle[:2]) for cycle in curve.loop] + [(-1.0, *cycle[2:]) for cycle in curve.loop]
     force, rise = np.concatenate([side[1] for side in sides]), np.concatenate([side[2] for side in sides])
@@ -169,7 +169,7 @@ def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
 
 
 def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
-    """Relaxation of force and pressure, percent of the value at `FIRST`: loss until the hold ends, and per decade."""
+    """Relaxation of force and pressure until the hold ends and per decade, percent of the value at `FIRST`."""
     later = time >= FIRST
     if later.sum() < 3:
         return {}
@@ -200,7 +200,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 
 def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
-    """Noise of force and pressure and drift without contact; the resolution too, if the run has a sensitivity."""
+    """Noise, drift of the pressure without contact and, with a sensitivity, resolution; none for loops and by hand."""
     if curve.run.kind in ("loop", "hand"):
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}
@@ -238,7 +238,7 @@ class GroupKey:
 
     @property
     def age(self) -> str:
-        """The age in words."""
+        """The age as text: "fresh", days, or months."""
         if self.age_days == 0:
             return "fresh"
         return f"{self.age_days:.0f} days" if self.age_days < 2 * _MONTH else f"{self.age_days / _MONTH:.0f} months"
@@ -246,7 +246,7 @@ class GroupKey:
 
 @dataclass(frozen=True, slots=True)
 class RunGroup:
-    """Runs of one resin, age and driving pressure: pooled ``figures`` by key, and those of ``each`` of ``curves``."""
+    """Runs of one resin, age and driving pressure: ``figures`` pooled, by key, and ``each``: those of each curve."""
 
     key: GroupKey
     curves: tuple[MeasuredCurve, ...]
@@ -255,7 +255,7 @@ class RunGroup:
 
     @property
     def sensors(self) -> list[str]:
-        """Names of the specimens."""
+        """Names of the group's sensors, sorted."""
         return sorted({curve.run.sensor for curve in self.curves})
 
     def of_kind(self, kind: str) -> list[MeasuredCurve]:
@@ -282,7 +282,7 @@ def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
 
 
 def _ages(days: set[float]) -> dict[float, float]:
-    """Age of the group of each age, days: ages close together form a group with their mean as age, 0 if fresh."""
+    """Mean age, in days, of the group that each age falls into; 0 for the group of fresh prints."""
     groups: list[list[float]] = []
     for age in sorted(days):
         if groups and (age <= FRESH or age - groups[-1][-1] <= max(_APART[0], _APART[1] * groups[-1][-1]) < age):
@@ -311,7 +311,7 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
 
 
 def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, float]:
-    """Figures of a run whose loading curve does not count in its group: without `_OF_LINE`, except for saturation."""
+    """Figures of a run that is not among `RunGroup.lined`: without those of `_OF_LINE`, except for saturation runs."""
     if curve.run.kind == "saturation":
         return values
     return {key: value for key, value in values.items() if key not in _OF_LINE}
@@ -329,7 +329,7 @@ def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estima
 
 
 def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
-    """Stiffness of the only run, with the interval due to the standard error of its first contact."""
+    """Stiffness of the only run, with the interval from its first contact's standard error if it is known."""
     pressed = (curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1]))
     curve = next(pressed, None)
     if curve is None or not np.isfinite(curve.onset_error):
@@ -339,4 +339,4 @@ def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Es
 
 
 _ALONE = {_DRIFT: _drift_of_one, STIFFNESS_KEY: _stiffness_of_one}
-"""Functions, by key, that give a figure of a single run an interval."""
+"""Functions that give a figure of a single run an interval, by the figure's key."""

@@ -11,18 +11,18 @@ from pneutouch.bench.excursions import Excursion
 from pneutouch.bench.record import Blocks
 
 BEFORE = 1.0
-"""Seconds before contact over which force and pressure without contact are read: after a reset has settled, and long
-enough that the mean of them adds little noise. Our choice."""
+"""Seconds before contact over which force and pressure are averaged: short enough that a reset has settled, and long
+enough that the mean adds little noise. Our choice."""
 
 THRESHOLD = 6.0
-"""Noise standard deviations of a block beyond which the force is contact: one false alarm in 10^9 blocks."""
+"""Deviation of the force, in noise standard deviations of a block, that counts as contact: one false alarm in 10^9."""
 
 LEAST_FORCE = 1e-3
 """Least force of a contact as a share of the run's greatest force, for a channel with next to no noise."""
 
 FIRST, CLEARLY = 0.01, 20.0
-"""The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is
-more. A dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
+"""Loadings are fitted up to this share of the run's greatest force, or this multiple of the noise if that is more. A
+dome's force grows a hundredfold over its range; only its first hundredth is of one power of the travel."""
 
 BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
 """F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated
@@ -39,11 +39,11 @@ _BACK = 3
 _GRID = 81
 
 _UNKNOWN = 10.0
-"""Standard error of an onset, in lengths of the fitted stretch, from which on the onset is undetermined."""
+"""Standard error of an onset, in lengths of the fitted stretch, above which the onset is undetermined."""
 
 
 class Baseline(NamedTuple):
-    """A stretch without contact: block numbers, means, slopes (per s) and detrended variances of force and pressure."""
+    """Blocks without contact: numbers; mean, slope (1/s), variance about it and in blocks, of force and pressure."""
 
     start: int
     end: int
@@ -54,8 +54,8 @@ class Baseline(NamedTuple):
 
 
 class ContactOnset(NamedTuple):
-    """First contact: time, plate position and its standard error; ``fitted`` is False where the position is the median
-    of the others."""
+    """First contact: time (s), plate position (mm) and its standard error; ``fitted`` is False where the position is
+    the median of the fitted ones."""
 
     time: float
     position: float
@@ -64,7 +64,7 @@ class ContactOnset(NamedTuple):
 
 
 def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
-    """Mean and scatter of force and pressure without contact over blocks ``start`` to ``end`` (at least one)."""
+    """Baseline of force and pressure over blocks ``start`` to ``end`` (exclusive), at least one."""
     time = blocks.time[start:end]
     centred = time - time.mean()
     means, slopes, between, within = [], [], [], []
@@ -91,7 +91,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
-    """Force in N above which there is contact, and the sign of the pressed force (-1 if the column's sign is wrong)."""
+    """Least force in N that counts as contact, and the sign of the pressed force (-1 if the column's sign is wrong)."""
     noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
     off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
     high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
@@ -160,7 +160,7 @@ def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign:
 
 
 def _error(loading: _Loading, onset: float, bend: float, length: float, *, bends: bool = False) -> float:
-    """Standard error of a fitted onset, mm, with the factor c free, and with ``bends`` the shape too."""
+    """Standard error of a fitted onset, mm, with the factor c free; with ``bends`` the shape is free too."""
     over = np.maximum(loading.position - onset, 0.0) / length
     shape = (1 - bend) * over + bend * over**2
     slope = (over > 0) * ((1 - bend) + 2 * bend * over) / length
@@ -178,7 +178,7 @@ def _error(loading: _Loading, onset: float, bend: float, length: float, *, bends
 
 
 def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:
-    """First block from which on the force exceeds ``least``; None if it does not before the hold."""
+    """First block of the loading from which on the force exceeds ``least``; None if there is none."""
     start, end = one.clear[1] - 1, max(one.hold[0] + 1, one.clear[1] + 1)
     force = sign * (blocks.force[start:end] - base.mean[0])
     peak = int(force.argmax())
@@ -189,8 +189,8 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
 
 
 class _Loading(NamedTuple):
-    """The first part of a loading: position, force less that without contact, bounds of the onset, travel; ``reaches``
-    is True if the force comes to the limit up to which loadings are fitted."""
+    """First part of a loading: position (mm), force less the one without contact (N), bounds of the onset, travel;
+    ``reaches`` is True if the force comes to the limit up to which loadings are fitted."""
 
     position: Array
     force: Array
@@ -219,7 +219,7 @@ def _loading(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: flo
 
 
 def _search(loading: _Loading, bends: Array, length: float) -> tuple[Array, Array]:
-    """Best onset and its squared misfit for each bend, (m,): a grid, then a finer one about its best."""
+    """Best onset and its squared misfit for each bend, (m,): a grid search, refined twice."""
     low, high = np.full(bends.size, loading.low), np.full(bends.size, loading.high)
     best, misfit = low, np.zeros(bends.size)
     for _ in range(3):

@@ -1,4 +1,4 @@
-"""Movements of the plate in a characterization (paper, section 3, Supplements C and D), and readings at each depth."""
+"""Plate movements of a characterization (paper, section 3, Supplements C and D), and readings of each indentation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation
 from pneutouch.spec.campaign import RunKind
 
 STEP, SHARE = 0.5, 0.75
-"""Step in mm, and the depth as a share of R0 (paper, section 3-B)."""
+"""Step in mm, and greatest depth as a share of the dome's inner height, R0 in the paper (section 3-B)."""
 
 HOLD, REST, SHORT_REST, RELAXATION = 4.0, 30.0, 2.0, 600.0
 """Seconds: hold and rest of the sensitivity test (3-B), rest of the saturation test (3-C), relaxation (Suppl. D)."""
@@ -29,7 +29,7 @@ CLEARANCE = 1.0
 """Distance between plate and dome before and after each indentation, mm: our choice."""
 
 DEEPEST = 0.90
-"""Depth of the saturation run as a share of R0: our choice, near the seat; the paper says "until it saturates"."""
+"""Depth of the saturation run as that share: our choice, near the seat; the paper says "until it saturates"."""
 
 CYCLES = 3
 """Cycles of the loading and unloading loop: our choice."""
@@ -62,7 +62,7 @@ class RunProtocol:
         return moves + len(self.depths) * (self.hold + self.rest)
 
     def quicker(self, rest: float, hold: float | None = None) -> RunProtocol:
-        """The protocol with a shorter rest and, if given, a shorter hold."""
+        """The protocol with another rest (s) and, if given, another hold (s)."""
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 
     def knots(self) -> tuple[Array, Array]:
@@ -87,7 +87,7 @@ def stairs(depth: float) -> tuple[float, ...]:
 
 
 def protocol(kind: RunKind, height: float) -> RunProtocol:
-    """The paper's protocol of a kind of run with a plate, for a dome of a ``height`` inside, mm."""
+    """Protocol of the paper for a run kind and a dome of inner ``height``, mm. Raises ValueError without a plate."""
     shallow, deep = SHARE * height, DEEPEST * height
     if kind == "steps":
         return RunProtocol(kind, stairs(shallow), HOLD, REST, True)
@@ -106,10 +106,10 @@ dome settles as an exponential does, most at first, and of the paper's 4 s the l
 leave no noise."""
 
 MARGIN = 0.01
-"""Share of the hold, at least one block, that is left between window and release, so that no motion gets in."""
+"""Share of the hold, at least one block, that is left out between window and release, to exclude motion."""
 
 RELEASED = 0.01
-"""Contact is lost where the force is below this share of the hold's, or within the noise, for `_STAYS` blocks."""
+"""Contact is lost where the force stays below this share of the hold's, or within the noise, for `_STAYS` blocks."""
 
 _STAYS = 3
 
@@ -152,19 +152,19 @@ class RunIndentations:
 
     @property
     def onset_error(self) -> float:
-        """Standard error of `onset` as of one contact, because all share the fitted shape; infinite without one."""
+        """Standard error of `onset`, mm, as of one contact, as all share a fitted shape; infinite without one."""
         errors = [one.error for one in self.contacts if one is not None and one.fitted][:EARLY]
         return math.hypot(BIAS, float(np.median(errors))) if errors else math.inf
 
     def kind(self, blocks: Blocks) -> RunKind:
-        """The kind of run that the indentations make."""
+        """Kind of run, by the indentations with contact."""
         touching = [one for one, contact in zip(self.parts, self.contacts, strict=True) if contact is not None]
         return kind_of(blocks, touching)
 
 
 def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
-    """Cut a run into indentations, one for each step of a loading, and read them; ``by_hand`` one for each press,
-    however the hand trembles. Raises InputError if the plate does not move."""
+    """Cut a run into indentations, one for each step of a loading, and read them; ``by_hand``: one for each press, even
+    if the hand trembles. Raises InputError if the plate does not move."""
     parts, pressed = excursions(blocks, steps=False, turn=TREMBLES) if by_hand else excursions(blocks)
     if not parts:
         return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)
@@ -182,7 +182,7 @@ def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
 
 
 def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
-    """Block numbers of the window read in a hold; at least one block."""
+    """First block, and one after the last, of the window that is read in a hold."""
     begin, end = hold
     length = float(blocks.time[end - 1] - blocks.time[begin])
     last = max(int(np.searchsorted(blocks.time, blocks.time[end - 1] - MARGIN * length)), begin)
@@ -192,7 +192,7 @@ def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
 
 
 def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
-    """Begin and end of the window read in a hold, s, from its blocks; the nominal begin if a gap covers it."""
+    """Begin and end of the window read in a hold, s; a nominal begin where a gap covers the actual one."""
     start, end = read_window(blocks, hold)
     length = min(READ * float(blocks.time[hold[1] - 1] - blocks.time[hold[0]]), READ_LONGEST)
     first, last = float(blocks.time[start]), float(blocks.time[end - 1])

@@ -1,4 +1,4 @@
-"""Questions about runs that may nevertheless be right, and runs that deviate from the others of their sensor."""
+"""Questions about runs that look wrong but may be right, and runs that deviate from others of the same sensor."""
 
 import math
 from collections.abc import Sequence
@@ -12,51 +12,52 @@ from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 FAR = 3.0
-"""Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's
-table with a median error of 8 % and are off by a factor of two for its stiffest resin."""
+"""Ratio of measured to predicted or stated value, or its inverse, that raises a question: our choice. The solid's
+predictions meet the paper's table with a median error of 8 % and are off by a factor of two for its stiffest resin."""
 
 RESET_KPA, RESET_SHARE = 1.0, 0.1
-"""Largest distance of the pressure before contact from the driving pressure: our choice, a regulator's scatter."""
+"""Largest difference of the pressure before contact from the driving pressure, in kPa or as a share of it, whichever is
+more: our choice, a regulator's scatter."""
 
 ABSOLUTE = (0.6, 1.1)
-"""Excess before contact, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
+"""Range of that difference, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
 
 _SURELY_ABSOLUTE = (0.85, 1.1)
-"""As `ABSOLUTE`, for a pressure that may be off for other reasons: up to 1.3 km above the sea."""
+"""`ABSOLUTE` where the pressure may be off for other reasons: up to 1.3 km above the sea."""
 
 LOADED = 0.1
-"""Share of the greatest force above which a force before contact may be a preload, and of the greatest rise above which
-a rise at constant force raises a question: our choice."""
+"""Share of the greatest force beyond which a force before contact may be a preload; share of the whole rise beyond
+which a rise at constant force raises a question: our choice."""
 
 _FLAT_POINTS, _NOISES, _LEVEL = 3, 6.0, 2e-3
-"""Number of points at the greatest force that may be a channel's end; their tolerance, in noise and as a share."""
+"""Least number of points of a flat end of the force; tolerance in noise and as a share of the greatest force."""
 
 _PARTS, _SWINGS = 200, 0.3
-"""Parts of a leak run whose means show presses, and their least rise and fall as a share of their span: our choice."""
+"""Parts of a leak run whose means show presses, and least rise and fall as a share of their span: our choice."""
 
 _START = 1.0
 """Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
 
 
 def number(value: float) -> str:
-    """A number to two digits."""
+    """Text of a number with two significant digits."""
     return f"{value:.2g}" if abs(value) < 1e4 else f"{value:.1e}".replace("e+0", "e")
 
 
 def looks_absolute(off_kPa: float, within: tuple[float, float] = ABSOLUTE) -> bool:
-    """True if a pressure before contact is above the driving pressure by about an atmosphere."""
+    """True if ``off_kPa``, pressure before contact less driving pressure, is within a range of standard atmospheres."""
     return within[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < within[1]
 
 
 def run_questions(curve: MeasuredCurve, columns: ColumnMap) -> list[str]:
-    """Questions that a record raises by itself: its kind, a preload, a force at its end, and doubts about its parts."""
+    """Questions that a record raises by itself: on its kind, a preload, a flat end of the force, its warnings."""
     doubts = (warning.why for warning in curve.warnings if warning.kind == "asked")
     asked = (_kind(curve), _loaded(curve, columns), _flat(curve, columns), *doubts)
     return [text for text in asked if text is not None]
 
 
 def _kind(curve: MeasuredCurve) -> str | None:
-    """Question about a stated kind of run whose record shows another."""
+    """Question about a stated kind of run whose record shows another; None if it agrees."""
     stated, shows = curve.run.kind, curve.shows
     stays = {"steps": True, "saturation": True, "relaxation": True, "loop": False}
     if stated not in stays or stays[stated] == stays.get(shows):
@@ -66,7 +67,7 @@ def _kind(curve: MeasuredCurve) -> str | None:
 
 
 def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
-    """Question about a force before contact that may be a preload."""
+    """Question about a force before contact that may be a preload; None if it is small."""
     zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
     top = float(np.abs(curve.force).max())
     if not zeros or abs(zeros[0]) <= LOADED * top:
@@ -78,7 +79,7 @@ def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
 
 
 def _flat(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
-    """Question about a force that stays at its greatest value while the pressure goes on rising."""
+    """Question about a force that stays at its greatest value while the pressure still rises; None if it does not."""
     force, rise = curve.force, curve.rise
     if force.size < _FLAT_POINTS + 2 or not math.isfinite(curve.noise[0]):
         return None
@@ -94,12 +95,11 @@ def _flat(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
-    """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START`
-    seconds.
+    """Questions about a leak run that may nevertheless be correct; it begins at its median pressure over `_START`.
 
-    Raises InputError if the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more
-    than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
-    campaign; without a stated driving pressure this begin is not checked."""
+    Raises InputError if that looks like an absolute pressure, or is more than `FAR` times or less than 1 / `FAR` of the
+    driving pressure stated in the campaign (unchecked if none is stated), or if more than half of the run is clipped:
+    at the end of the gauge's range (`reading.CLIPPED`) or at a flat top."""
     questions: list[str] = []
     started = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(started, 1)])) / KPA, run.driving_pressure_kPa
@@ -133,7 +133,7 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
 
 
 def _swing(blocks: Blocks) -> str | None:
-    """Question about a leak run whose pressure goes both up and down, as under presses."""
+    """Question about a leak run whose pressure goes both up and down, as under presses; None if it does not."""
     parts = np.array_split(blocks.pressure, _PARTS)
     means = np.array([part.mean() for part in parts if part.size])
     up = float((means - np.minimum.accumulate(means)).max())
@@ -147,19 +147,19 @@ def _swing(blocks: Blocks) -> str | None:
 
 
 APART = 0.15
-"""Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its
-three identical sensors by 2 to 10 % (Fig. 7 and S2)."""
+"""Relative difference that runs of one sensor may have: our choice. The paper's three runs differ by 1 % in
+sensitivity, its three identical sensors by 2 to 10 % (Fig. 7 and S2)."""
 
 TIMES = 5.0
-"""Factor on the scatter of the others (1.4826 times their median deviation) that must be exceeded too."""
+"""Multiple of the other runs' scatter (1.4826 times their median deviation) that a deviation must exceed too."""
 
 
 def outliers(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
-    """Runs that deviate from the others of one sensor, kind, driving pressure and age, and the reason.
+    """Runs that deviate from the others of the same sensor, kind, driving pressure and age, each with the reason.
 
     The force at the greatest common depth and the slope of pressure over force are compared, as logarithms: a run
-    deviates where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of two
-    runs that differ by `APART` both are reported.
+    deviates where one of them differs from the median of the others by more than `APART` and by more than `TIMES` their
+    scatter. Of two runs that differ by `APART` both are reported.
     """
     groups: dict[tuple[object, ...], list[MeasuredCurve]] = {}
     for curve in curves:
@@ -194,7 +194,7 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
 
 
 def _sensitivity(curve: MeasuredCurve, reach: float) -> float:
-    """Sensitivity of a curve up to a force, kPa/N."""
+    """Sensitivity of a curve up to the force ``reach`` (N), kPa/N; NaN if the points do not determine it."""
     to = curve.force <= reach
     values = figures(curve.indentation[to], curve.force[to], curve.rise[to] / KPA)
     return float("nan") if values is None else values.sensitivity

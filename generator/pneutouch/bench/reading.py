@@ -21,24 +21,24 @@ from pneutouch.tables.unit_words import ABSOLUTE, UNITS
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 CLIPPED = 0.98
-"""Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
+"""Share of an instrument's range from which a reading counts as clipped: our choice, makers specify the whole range."""
 
 BEYOND = 1.2
-"""Share of its range beyond which no instrument reads: a channel that does for long has a wrong unit or stated range
-and is not clipped there; a channel that does for a moment shows a fault of the line."""
+"""Multiple of its range that no instrument reads: a longer reading beyond it means a wrong unit or stated range, not
+clipping; a short one (`SPIKE`) a fault of the line."""
 
 SPIKE, FEW = 0.1, 3
-"""Duration in s, or number of blocks if longer, below which a reading is a spike: our choice, a plate stays longer."""
+"""Duration in s, or number of blocks if longer, below which that is a spike: our choice, a plate stays longer."""
 
 GREATEST = 1e100
 """Greatest reading in internal units: no instrument reads more, and squares of much larger ones would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
-"""A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a
-coarse or noiseless channel repeats everywhere. Our choice."""
+"""A flat top lasts longer than this, in s, and less than this share of other blocks repeat the one before: a coarse or
+noiseless channel repeats everywhere. Our choice."""
 
 _PRESSED = 30.0
-"""Noise standard deviations by which the force must change as evidence of movement: our choice."""
+"""Change of the force, in noise standard deviations, that shows that the plate moved: our choice."""
 
 PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force", "pressure"), ("time", "pressure")
 """Channels of a run with a plate, of a run pressed by hand, whose travel is unknown, and of a run without contact."""
@@ -62,12 +62,12 @@ def read_blocks(
     About `record.BLOCK_RATE` blocks a second, or one sample each up to `record.SLOW` Hz. The file is read in one pass
     and is never in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
 
-    In a run without a plate (the source has the channels of `LEAK`) position and force are zero; in a run by hand
-    (`HAND`) the position is. ``ambient`` (MPa) is subtracted from absolute pressures.
+    Position and force are zero in a run without a plate (the source has the channels `LEAK`), the position in one by
+    hand (`HAND`). ``ambient`` (MPa) is subtracted from absolute pressures.
 
     Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
-    half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead
-    channel."""
+    half of the samples missing, a dead channel (not in a run in which nothing moves, as a leak run), or two channels
+    that are multiples of each other."""
     path, columns, keys = source.path, source.columns, source.channels
     pressed = "force" in keys
     names = {key: getattr(columns, key).name for key in keys}
@@ -128,7 +128,7 @@ def scaled(
 
 
 def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
-    """Refuse two channels of which one is a linear function of the other, as when a column is copied or named twice."""
+    """Raise InputError if one channel is a linear function of another, as when a column is copied or named twice."""
     known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in names]
     for (first, one), (second, other) in itertools.combinations(known, 2):
         spans = float(np.ptp(one)), float(np.ptp(other))
@@ -145,7 +145,7 @@ def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
-    """Refuse a dead channel: force or pressure while the plate moves, or the position while the force changes."""
+    """Raise InputError for a channel constant while the plate moves, or a position while the force changes."""
     problem = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
     question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
@@ -196,7 +196,7 @@ def _clipped(
 
 
 def _short(blocks: Blocks, beyond: Flags) -> Flags:
-    """Flagged blocks, (n,), in stretches too short to come from the plate."""
+    """Flags (n,) of blocks in ``beyond`` that lie in stretches too short to come from the plate."""
     most = max(SPIKE * blocks.rate / blocks.size, FEW)
     short: Flags = np.zeros(beyond.size, bool)
     for start, end in _runs(beyond):
@@ -219,7 +219,7 @@ def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
-    """Blocks that hold nothing but the extreme value, (n,); none where the channel is coarse or without noise."""
+    """Flags (n,) of blocks that hold only the extreme value, for long; none if the channel is coarse or noiseless."""
     close = _EXACT * extreme.max()
     quiet = spread <= close
     again = quiet & (np.abs(np.diff(values, prepend=np.nan)) <= close)
@@ -259,10 +259,10 @@ INJECTION = ("volume", "pressure")
 
 _LEAST_BLOCKS = 10
 _BATCHES = 10
-"""Parts of a leak run whose means give the slope's error: correlated noise would make it too small."""
+"""Parts of a leak run whose means give the slope's error: from single samples, correlated noise makes it too small."""
 
 _ABSOLUTE = 0.7
-"""Share of the ambient pressure above which the lowest pressure of a table shows that it holds absolute pressures."""
+"""Least pressure of a table over the ambient pressure above which the pressures look absolute."""
 
 
 def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -> tuple[Array, Array]:
@@ -270,8 +270,8 @@ def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -
 
     ``ambient`` (MPa) is subtracted from absolute pressures.
 
-    Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a pressure
-    that does not rise with it.
+    Raises InputError for what `tables.read.chunks` does, for fewer than three rows, a volume that does not vary, and a
+    pressure that does not rise with it.
     """
     path, columns = source.path, source.columns
     rows, values = whole(path, [getattr(columns, key).name for key in INJECTION], source.layout)
@@ -298,7 +298,7 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
 
     Boyle: pressure = pressure_0 + ambient / V volume, by least squares with both free (a gauge's zero, or a first push
     that was lost, does not matter). ``value`` is V, ``spread`` its standard error (count 1). Raises ValueError for
-    fewer than three points and where the pressure does not rise."""
+    fewer than three points, a pressure that does not rise, or one that looks absolute."""
     if volume.size < LEAST_POINTS:
         raise ValueError(f"{volume.size} points of injected volume; at least {LEAST_POINTS}")
     centred = volume - volume.mean()

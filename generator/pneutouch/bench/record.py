@@ -1,4 +1,4 @@
-"""A run between file and figures: samples averaged into blocks of equal time, indentations, and a curve."""
+"""Data of a run between file and figures: samples averaged into blocks of equal time, indentations, and a curve."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,10 +15,10 @@ SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "other"]
 
 
 class SuspectInterval(NamedTuple):
-    """A time interval (s) of a run that may be wrong, and the reason.
+    """Time interval (s) of a run that may be wrong, and the reason.
 
-    ``used``: True if it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond
-    that, a note of a usual defect, a doubt that is asked about, or another."""
+    ``used``: True if its data are used nevertheless. ``kind``: a gap, a channel at the end of its range (clipped), a
+    reading beyond that (spike), a usual defect (note), a doubt to ask about (asked), or another."""
 
     start: float
     end: float
@@ -29,11 +29,11 @@ class SuspectInterval(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """A file's samples averaged over blocks of ``size``, in the file's order; s, mm, N, MPa, arrays (n,).
+    """A file's samples averaged over blocks of ``size`` samples, in the file's order; s, mm, N, MPa, arrays (n,).
 
     ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them,
-    ``first_row`` the row of the file (the header is row 1) with which each begins. ``rate`` is the sampling rate of the
-    file, Hz."""
+    ``first_row`` the row of the file (the header is row 1) with which each block begins. ``rate`` is the sampling rate
+    of the file, Hz."""
 
     file: Path
     rate: float
@@ -58,12 +58,12 @@ class MeasuredIndentation:
         contact: Time of first contact; NaN if there is none.
         hold: Begin and end of the hold.
         read: Begin and end of the stretch that was averaged: the last part of the hold.
-        release: Time at which contact is lost.
-        onset: Plate position at first contact of this indentation.
+        release: Time at which contact is lost; NaN if it is not.
+        onset: Plate position at first contact of this indentation; NaN without contact.
         fitted: True if ``onset`` was fitted; else it is the median of the fitted ones.
-        indentation: Plate travel to the hold from the run's first contact (`indents.EARLY`).
+        indentation: Plate travel to the hold from the run's first contact (`indents.EARLY`); NaN without contact.
         force: Mean over ``read`` less the mean before contact.
-        rise: The same for the pressure.
+        rise: Mean pressure over ``read`` less the mean before contact.
         driving: Pressure before contact.
         zero_force: Force before contact.
     """
@@ -83,17 +83,17 @@ class MeasuredIndentation:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCurve:
-    """The curve of a run: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
+    """The curve of a run: points in order of depth, from first contact; the first is the origin.
 
     Attributes:
         run: Entry of the run in the campaign; a kind that it leaves out is the one that the record shows.
-        indentation, force, rise: Loading points.
+        indentation, force, rise: Loading points, (n,) mm, N, MPa; by hand the indentation is NaN.
         driving: Pressure before contact as it was read, MPa, mean over the indentations.
         indents: The indentations behind the points.
         loop: For each cycle of a loop run: force and rise going in, force and rise coming out.
         relaxation: For a relaxation run: seconds since the hold began, force, rise.
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN if
-            nothing was without contact.
+            not known.
         drift: Slope of the pressure before the first contact, MPa/s, and its standard error.
         onset_error: Standard error of the place of first contact, mm; infinite if it is not known.
         shows: Kind of run that the plate's travel shows, whatever the campaign states.
@@ -118,7 +118,7 @@ class MeasuredCurve:
 
 
 MOST = 3000
-"""Greatest number of points of a trace: more than a page shows; even, as each stretch keeps two."""
+"""Greatest number of points of a trace: more than a page shows; even, because each stretch keeps two."""
 
 
 class Trace(NamedTuple):
@@ -159,7 +159,7 @@ def _span(values: Array, edges: Indices) -> Array:
 
 
 BLOCK_RATE = 100.0
-"""Blocks a second: our choice; a plate at 5 mm/s moves 0.05 mm in one, and ten minutes are 60 000 blocks."""
+"""Blocks a second: our choice; at 5 mm/s a plate moves 0.05 mm in a block, and ten minutes are 60 000 blocks."""
 
 SLOW = 200.0
 """Hz: a file of this rate or less keeps one sample a block; averages of one or two would gain nothing."""
@@ -173,7 +173,7 @@ LEAST_STEP = 1e-9
 _MOST_LOST = 2.0**53
 
 MISSED, GAP = 1.5, 0.1
-"""Time step, in sampling periods, above which samples are missing, and in s, above which it is a gap of its own."""
+"""Time step in sampling periods above which samples are missing, and in s above which that is listed as a gap."""
 
 ISOLATED, RARE = 2, 1e-3
 """Most samples missing in a row, and share of the run's samples missing in all, that are only noted: our choice. No
@@ -190,9 +190,9 @@ _ROUNDING = 1e-6
 
 @dataclass
 class BlockCollector:
-    """Takes samples in internal units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
+    """Averages samples in internal units (s, mm, N, MPa), taken chunk by chunk, into `Blocks`.
 
-    ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time;
+    ``rate`` in Hz and samples a block ``size`` are found from the first chunk if None (the median step of time;
     `BLOCK_RATE`); ``total`` is about how many samples will come. ``names`` are the columns' names for messages."""
 
     file: Path
@@ -209,7 +209,7 @@ class BlockCollector:
     _short: list[int] = field(default_factory=lambda: [0, 0, 0])
 
     def take(self, rows: Array, samples: Array) -> None:
-        """Take samples (4, n) and their rows (n,). Raises InputError if time does not increase."""
+        """Take samples (4, n) and their rows (n,). Raises InputError if time rises too little or not at all."""
         if not rows.size:
             return
         time = samples[0]
@@ -261,7 +261,7 @@ class BlockCollector:
         self._short[2] = max(self._short[2], int(short.max(initial=0)))
 
     def _average(self, samples: Array, end: bool = False) -> None:
-        """Average the blocks that are whole and hold the last one back, as more of it may come."""
+        """Average the blocks that are whole; the last one is held back until ``end``, as more of it may come."""
         assert self.size is not None and self.rate is not None and self._first is not None
         if self.size == 1:
             starts = np.arange(samples.shape[1])
@@ -280,7 +280,7 @@ class BlockCollector:
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
     def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
-        """The blocks, with gaps as warnings. Raises InputError if more than half of the record is missing."""
+        """The blocks, with gaps as warnings. Raises InputError for no samples, or more than half of them missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError("no samples", file=self.file)
         if self._held.size:

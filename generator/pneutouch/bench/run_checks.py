@@ -1,4 +1,4 @@
-"""Plausibility of a run against its prediction: wrong units, signs and columns are questioned, never corrected."""
+"""Plausibility of a run against its prediction: wrong units, signs and columns are reported, never corrected."""
 
 import math
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
 
 UNIT_NEAR = 1.8
-"""Factor within which another unit must bring a reading to the prediction: our choice, below half of `FAR`."""
+"""Factor within which another unit must bring a reading to the prediction: our choice, below `FAR`."""
 
 BEYOND = 10.0
-"""Factor above the predicted force or rise that no other sensor explains: our choice, three times `FAR`. Another unit
-then explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
+"""Ratio to the predicted force or rise that no other sensor explains: our choice, three times `FAR`. Above it another
+unit explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
 
 DRIVING_FAR = 3.0
-"""Multiple of `RESET_KPA` or `RESET_SHARE` that neither the gauge's zero nor a regulator explains: our choice."""
+"""Multiple of the larger of `RESET_KPA` and `RESET_SHARE` that no gauge zero or regulator explains: our choice."""
 
 SWAP_MARGIN = math.log(2.0)
 """Margin (log of a factor) by which swapped readings must be nearer to the prediction, at zero driving pressure."""
@@ -33,9 +33,8 @@ _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
 _STARTED, _STARTS, _REACHED, _LIKE, _UNLIKE = 4, 81, 0.8, 0.05, 0.3
-"""Least number of points, number of places inside the dome where a record may begin, least share of the depth that is
-compared, and distances from the prediction, as a share, up to which it is met and from which it is missed: our
-choice."""
+"""Least number of points; number of places inside the dome tried as begin of a record; least share of its depth that is
+compared; relative distances from the prediction below which it is met and above which it is missed: our choice."""
 
 _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
@@ -44,7 +43,7 @@ _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
     -1: " (in `columns` leave out the minus before the name)",
 }
-"""Hints how to turn a sign in the syntax of `workflows.characterize.parse_columns`, by the sign stated."""
+"""Hints on turning a sign in the syntax of `workflows.characterize.parse_columns`, by the stated sign."""
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
@@ -59,7 +58,7 @@ _SHAPE = 1.5
 class ExpectedRun:
     """The prediction of a run: force (N) and rise (MPa) at a depth (mm).
 
-    ``curve`` are indentations (ascending, mm), forces and rises up to there, (n,) each, where they are available.
+    ``curve`` is indentations (ascending, mm), forces and rises up to that depth, (n,) each; None if not available.
     """
 
     depth: float
@@ -68,7 +67,7 @@ class ExpectedRun:
     curve: tuple[Array, Array, Array] | None = None
 
     def at(self, depth: float) -> tuple[float, float]:
-        """Force and rise at a depth up to the prediction's."""
+        """Force (N) and rise (MPa) at a depth (mm) up to the prediction's."""
         if self.curve is None:
             share = (depth / self.depth) ** _SHAPE
             return self.force * share, self.rise * share
@@ -81,10 +80,10 @@ def check_plausible(
 ) -> tuple[str, ...]:
     """Questions about a run that may nevertheless be correct and is used.
 
-    Without a prediction (``expected`` None) only signs, times and the driving pressure are checked. Raises InputError
-    for what is impossible: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR`
-    and right in another unit of `spec.campaign.UNITS` (beyond `BEYOND`: near in another unit), a pressure before
-    contact that is `DRIVING_FAR` times as far from the driving pressure as a reset leaves it."""
+    Without a prediction (``expected`` None) only the record itself is checked: signs, times, driving pressure. Raises
+    InputError for the impossible: a wrong sign, force and pressure swapped, a record begun inside the dome, a magnitude
+    off by more than `FAR` and right in another unit (above `BEYOND`: within `FAR` in another unit), a pressure before
+    contact `DRIVING_FAR` times as far from the driving pressure as a reset leaves it (a question if below zero)."""
     _check_signs(curve, columns, file)
     by_hand = curve.run.kind == "hand"
     if expected is not None and not by_hand:
@@ -100,8 +99,8 @@ def check_plausible(
 
 
 def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> str | None:
-    """Question about the rise of a press by hand at its force, up to the prediction's. Raises InputError if it is off
-    by more than `BEYOND`: without the travel nothing tells which of the two channels is wrong."""
+    """Question about the rise of a press by hand at its greatest force (or the prediction's), or None. Raises
+    InputError if off by more than `BEYOND`: without the travel nothing tells which channel is wrong."""
     if expected.curve is None:
         return None
     _, force, rise = expected.curve
@@ -141,7 +140,7 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
 
 
 def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: str, predicted: str) -> str | None:
-    """Question about an implausible ratio of measured to predicted; None for a plausible one. Raises an error if a unit
+    """Question about a ratio of measured to predicted; None if it is plausible. Raises InputError if another unit
     explains it."""
     if 1 / FAR <= ratio <= FAR:
         return None
@@ -182,14 +181,14 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
 
 
 def _check_start(curve: MeasuredCurve, expected: ExpectedRun, file: Path) -> None:
-    """Raise InputError if force and rise are those of the prediction from some way inside the dome on, and no multiple
-    of those from first contact."""
+    """Raise InputError if the record begins inside the dome, or first contact is found late: force and rise are the
+    prediction's from some depth on, and no multiple of the prediction from first contact."""
     if expected.curve is None or curve.indentation.size < _STARTED:
         return
     (travel, *predictions), depths = expected.curve, curve.indentation
 
     def off(start: float, *, scaled: bool = False) -> float:
-        """Greatest distance of force and rise from the prediction's beyond ``start``, as a share of their ends."""
+        """Greatest distance of force and rise from the prediction's beyond ``start``, as a share of their greatest."""
         shared, parts = depths + start <= travel[-1], []
         for measured, predicted in zip((curve.force, curve.rise), predictions, strict=True):
             beyond = (np.interp(depths + start, travel, predicted) - np.interp(start, travel, predicted))[shared]
@@ -257,7 +256,8 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """Question about the length of holds, which reveals a wrong unit of time; a few times the paper's is accepted."""
+    """Question about holds whose length is off by more than `_HOLD_FAR` times, as in a wrong unit of time; else
+    None."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))

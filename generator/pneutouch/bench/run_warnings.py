@@ -16,14 +16,14 @@ from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 SHORT = 0.5
-"""A hold is short below this share of the paper's: our choice."""
+"""Share of the paper's hold below which a hold is reported as short: our choice."""
 
 SETTLED = 0.01
 """Share of the force or the rise by which the two halves of a read window may differ: our choice."""
 
 LEAK, ASKED = 0.02, 0.05
-"""Shares of the greatest rise that a leak may take in a hold before it is noted, and before it is a question: our
-choice, the first about the difference between three runs."""
+"""Shares of the greatest rise that a leak may take during an indentation before it is noted, and before it is asked
+about: our choice, the first about the difference between three runs."""
 
 SAME_DEPTH = 0.03
 """Difference in mm up to which two depths are the same: some standard deviations of an onset (0.004 to 0.01 mm)."""
@@ -37,15 +37,15 @@ MISSING, PRESSED = 0.1, 0.002
 """Share of a loading that may be missing, and of its force by which the force may change before contact: our choice."""
 
 SURELY = 8.0
-"""Standard errors above which that change is no chance, even with correlated noise: our choice."""
+"""Multiple of its noise above which a change of the force is no chance, even with correlated noise: our choice."""
 
 _SIGNIFICANT = 4.0
 """Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
 
 
 def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Reason why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing;
-    None if it can."""
+    """Reason why an indentation cannot be used: a channel clipped while read or within ``before`` s before contact, or
+    half of the read samples missing; None if it can be used."""
     lost = 0.0
     for warning in blocks.warnings:
         if warning.used:
@@ -59,7 +59,7 @@ def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str
 
 
 def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
-    """Warnings as listed: of gaps, clipped parts and spikes the first `MOST` of each and a sum of the others."""
+    """Warnings as listed: the first `MOST` gaps, clipped parts and spikes each and a sum of the rest; all others."""
     shown = [warning for warning in warnings if warning.kind not in _MANY]
     for kind, name in _MANY.items():
         alike = [warning for warning in warnings if warning.kind == kind]
@@ -74,7 +74,7 @@ def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
 
 
 def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
-    """Warnings about holds, contacts, releases, depths and the pressure without contact, in order of time."""
+    """Warnings about holds, contacts, releases, depths and the pressure without contact."""
     warnings: list[SuspectInterval] = []
     if indentations.pressed:
         end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
@@ -112,7 +112,7 @@ def _of_one(
 
 
 def goes_on(indentations: RunIndentations, number: int) -> bool:
-    """True if the next indentation is a further step of the same loading."""
+    """True if the indentation after ``number`` (counted from 0) is a further step of the same loading."""
     parts = indentations.parts
     return number + 1 < len(parts) and parts[number + 1].clear == parts[number].clear
 
@@ -147,7 +147,7 @@ def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
 
 
 def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
-    """Warning about a drift without contact that in a hold is more than a share of the greatest rise."""
+    """Warning about a drift without contact that takes more than `LEAK` of the greatest rise during an indentation."""
     touched = [
         (base, one)
         for base, one in zip(indentations.bases, indentations.indents, strict=True)
@@ -179,7 +179,7 @@ def slope_variance(blocks: Blocks, base: Baseline) -> float:
 
 
 def cut_short(blocks: Blocks, indent: MeasuredIndentation, held: bool) -> str | None:
-    """Reason why a loading without a stay cannot be used: much of it was not recorded, its deep end perhaps."""
+    """Reason why a loading without a stay cannot be used: much of it was not recorded; None if it can be."""
     if held:
         return None
     begin, end = indent.contact, indent.hold[1] + max(indent.hold[1] - indent.contact, 0.0)
@@ -189,7 +189,7 @@ def cut_short(blocks: Blocks, indent: MeasuredIndentation, held: bool) -> str | 
 
 
 def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation) -> str | None:
-    """Reason why an indentation cannot be used: the force rises with the plate already where it should be clear."""
+    """Reason why an indentation cannot be used: the force changes where the plate should be clear; else None."""
     end = int(np.searchsorted(blocks.time, indent.contact))
     start = part.clear[0]
     # Where the plate rests first, the force may change for other reasons, and contact is found against its level.
@@ -205,15 +205,15 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
 
 
 _BEND, _MOST_LAG = 0.2, 0.6
-"""Distance over which a bend of force or pressure is measured, and greatest lag that is looked for, s: our choice."""
+"""Time over which a bend of force or pressure is measured, and greatest lag that is looked for, s: our choice."""
 
 _MATCHED, _BLURRED, _LAG_COUNTS = 0.9, 0.5, 0.01
-"""Correlation of the bends from which their lag is known, greatest one at other lags, and change of the rise at its
-steepest, as a share of its span, from which a lag is asked about: our choice."""
+"""Correlation of the bends above which their lag is known, greatest one at other lags, and change of the rise at its
+steepest, as a share of its span, above which a lag is asked about: our choice."""
 
 
 def lagging(blocks: Blocks) -> list[SuspectInterval]:
-    """Doubt about the time between force and pressure: both bend where the plate turns, so the bends must coincide."""
+    """Doubt about the time between force and pressure, or none: both bend where the plate turns, so must coincide."""
     if blocks.time.size < 3:
         return []
     step = float(np.median(np.diff(blocks.time)))

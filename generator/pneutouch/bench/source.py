@@ -1,4 +1,4 @@
-"""Columns of a measured file: the channel and the unit of each, by its name, and how the file is written."""
+"""Columns of a measured file, found by their names: channel and unit of each, and the layout of the file."""
 
 import re
 from collections.abc import Sequence
@@ -54,7 +54,7 @@ _OTHER_QUANTITIES = frozenset(
         "cycles",
     }
 )
-"""Words of a header that make its column no channel, whatever its unit: no measured force, no gauge pressure."""
+"""Words in a header that exclude its column, whatever its unit: no measured force or gauge pressure."""
 
 _SPLIT = re.compile(r"[^\W_]+")
 _LONGEST = 200
@@ -65,14 +65,14 @@ _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 
 
 class MissingChannelError(InputError):
-    """Error for a file that has no column for the channels in ``channels``."""
+    """Error for a file without a column for one of the required ``channels``."""
 
     channels: tuple[str, ...] = ()
 
 
 class HeaderMeaning(NamedTuple):
-    """Meaning of a header: ``word`` is the channel that its words name, ``kind`` and ``unit`` are the channel to which
-    its unit belongs and the unit; "" if unknown. ``odd``: its unit or its quantity belongs to no channel."""
+    """Meaning of a header: ``word`` is the channel that its words name, ``kind`` the channel of its unit, ``unit`` the
+    unit; each "" if unknown. ``odd``: its unit or quantity belongs to no channel."""
 
     word: str
     kind: str
@@ -81,7 +81,7 @@ class HeaderMeaning(NamedTuple):
 
     @property
     def channel(self) -> str:
-        """The channel, "" where words and unit name none, or two."""
+        """The channel; "" where words and unit name none, or name different ones."""
         if self.odd or (self.word and self.kind and self.word != self.kind):
             return ""
         return self.word or self.kind
@@ -139,12 +139,12 @@ def _channel(label: str, words: list[str]) -> str:
 
 _ANY = FileFormat()
 _PLAIN = {"delimiter": ",", "decimal": ".", "encoding": "utf-8"}
-"""Layout of a text file that a campaign file need not state."""
+"""Layout of a text file that need not be stated in a campaign file."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFile:
-    """A file with its columns and layout; ``guessed`` are the channels and keys of its format that were not stated."""
+    """A file with its columns and layout; ``stated`` is its format in the campaign, ``guessed`` what was found."""
 
     path: Path
     columns: ColumnMap
@@ -155,7 +155,7 @@ class MeasuredFile:
 
     @property
     def content(self) -> ReadTables:
-        """Layout and columns that were found or given, as the tables [format] and [columns] of a campaign file.
+        """Layout and columns, found or stated, as the tables [format] and [columns] of a campaign file.
 
         The header's place is left out, because the columns' names determine it."""
         used = {key: getattr(self.layout.format, key) for key in _PLAIN}
@@ -168,7 +168,7 @@ class MeasuredFile:
 def campaign_lines(content: ReadTables, within: str = "") -> str:
     """The tables [format] and [columns] of `MeasuredFile.content` as lines of a campaign file.
 
-    ``within`` stands before their names: ``runs.`` where they belong to the [[runs]] entry above them.
+    ``within`` is put before the tables' names: "runs." for tables of the [[runs]] entry above them.
     """
     return "\n\n".join(
         "\n".join([f"[{within}{name}]", *(f"{key} = {value_text(plain(value))}" for key, value in table.items())])
@@ -182,7 +182,7 @@ def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: F
 
     A channel stated in ``columns`` is that column. Any other is the column with its default name; else the only one
     whose name and unit mean the channel; else the only one whose name or unit does. Raises InputError, with the lines
-    of a campaign file that would decide, where two columns may be a channel, none is, or its unit is not known."""
+    of a campaign file that decide, where several columns may be a channel or its unit is not known or none is."""
     stated = columns.model_fields_set
     known = [getattr(columns, key).name for key in channels]
     layout = layout_of(path, TableFormat(**written.model_dump()), known)
@@ -216,14 +216,14 @@ def _entry(column: Column) -> ReadColumn:
 
 
 def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, ReadColumn]:
-    """Entries of the channels that are not needed, unless a needed column has the same name."""
+    """Entries of the channels that are not needed, without those whose name a needed column has."""
     names = {column.name for column in matched.values()}
     others = {key: getattr(columns, key) for key in UNITS if key not in matched}
     return {key: _entry(column) for key, column in others.items() if column.name not in names}
 
 
 def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Column:
-    """A stated column with the unit that its header gives, if the campaign gives none. Raises InputError."""
+    """Stated column with the unit from its header if the campaign gives none. Raises InputError without either."""
     if column.unit:
         return column
     place = _index(layout, column.name)
@@ -239,7 +239,7 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
 
 
 def _index(layout: TableLayout, name: str) -> int | None:
-    """Index in `TableLayout.all_names` of a column given by its name or number; None if there is none."""
+    """Index in `TableLayout.all_names` of a column given by its name or number; None if the file has no such column."""
     if name in layout.all_names:
         return layout.all_names.index(name)
     place = layout.place(name)
@@ -255,7 +255,7 @@ def _undecided(
     open_: dict[str, list[int]],
     meanings: Sequence[HeaderMeaning],
 ) -> InputError:
-    """The error for channels without a column, with lines that show the columns found and those left open."""
+    """Error for channels without a column, with campaign lines that show the columns found and those to choose from."""
     names, first = layout.all_names, next(iter(open_))
     lines, remarks = {}, {}
     for key in channels:

@@ -1,4 +1,4 @@
-"""The simulator: records like those of a rig, from known sensors. They are always labelled as simulated."""
+"""Simulator: records of known sensors, like those of a rig, always labelled as simulated."""
 
 from pneutouch.bench.simulate.curve import ModelDeviation, PressCurve, press_curves
 from pneutouch.bench.simulate.rig import RigModel, ScatterModel, SimulatedSpecimens, WallMemory

@@ -1,7 +1,6 @@
-"""The pressed curve of one specimen, as the simulator and the test plan read it.
+"""Curves of a specimen for the simulator and the test plan: pressed, or filled with air while unpressed.
 
-Deviations of a simulated sensor from its model, so that a calibration does not meet the very model that it fits.
-"""
+Their deviations from the model keep a calibration from meeting exactly the model that it fits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,8 +18,8 @@ STEPS = 56
 """Equal plate steps of the fine grid: the solid's contact advances in cells, 56 steps follow it to 0.1 % of force."""
 
 OFF_AXIS_STEPS = 14
-"""Plate steps off the axis, where a step costs as much as a central press: with the cubics between them force and rise
-are within 1 % of full scale of those of 56 steps (docs/background/off-axis.md)."""
+"""Plate steps off the axis, where a step costs as much as a central press: with cubics between them force and rise are
+within 1 % of full scale of those of 56 steps (docs/background/off-axis.md)."""
 
 _ROUNDING = 1e-9
 _LEAST_POINTS = 3
@@ -34,10 +33,9 @@ class PressCurve:
     """Force and pressure rise over plate travel, (n,) mm, N, MPa, from first contact to the end of the range.
 
     Attributes:
-        driving: Driving pressure.
+        driving: Driving pressure, MPa.
         indentation, force, rise: The curve; the first point is the origin.
-        ends: Event that ends the range before the depth, and its place (mm); None without one.
-    """
+        ends: Event that ends the range before the depth, and its place (mm); None without one."""
 
     driving: float
     indentation: Array
@@ -47,11 +45,11 @@ class PressCurve:
 
     @property
     def reach(self) -> float:
-        """Greatest plate travel of the curve."""
+        """Greatest plate travel of the curve, mm."""
         return float(self.indentation[-1])
 
     def covers(self, depth: float) -> bool:
-        """True if a plate travel lies within the range."""
+        """True if a plate travel (mm) lies within the range."""
         return depth <= self.reach * (1 + _ROUNDING)
 
     def at(self, travel: Array) -> tuple[Array, Array]:
@@ -76,8 +74,9 @@ class PressCurves:
 def press_curves(
     sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
 ) -> PressCurves:
-    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge does not end the range: the rig
-    clips. A shear after the press is left out, and an object off the axis makes at most `OFF_AXIS_STEPS`.
+    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge does not end the range, as the
+    simulated rig clips its reading. A shear after the press is left out; off the axis at most `OFF_AXIS_STEPS` are
+    taken.
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
     """
@@ -91,7 +90,7 @@ def press_curves(
 
 
 def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
-    """Curve of a state to the end of its range; if that comes early, the sensor is pressed again up to there."""
+    """Curve of a state to the end of its range; a range that ends early is pressed again, up to just before its end."""
     ending = next((event for event in state.events if event.ends_range), None)
     ends = None if ending is None else (ending.kind, state.range_end)
     if state.beyond_axis is not None and state.range_end > 0:
@@ -112,7 +111,7 @@ def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
 
 
 _WAVES = 3
-"""Half waves along the travel that a smooth deviation is made of, the k-th 1/k as large: our choice."""
+"""Half waves along the travel that make up a smooth deviation, the k-th 1/k as large: our choice."""
 
 _TURN = 22.0 * KPA
 """Driving pressure, MPa, at which the smooth share is independent of the share at zero: the paper's highest."""
@@ -120,7 +119,7 @@ _TURN = 22.0 * KPA
 
 @dataclass(frozen=True, slots=True)
 class ModelDeviation:
-    """Shares of force and of pressure rise by which a specimen deviates, drawn independently; none by default."""
+    """Relative deviations of a specimen's force and pressure rise, drawn independently; none by default."""
 
     common: float = parameter(
         0.0, "1", "standard deviation of the share that is the same at every driving pressure and travel"
@@ -139,7 +138,8 @@ class ModelDeviation:
 
 
 def _deviated(curve: PressCurve, common: Array, waves: Array) -> PressCurve:
-    """The curve with shares ``common`` of force and rise, (2,), and weights ``waves`` of waves, (2, 2, waves)."""
+    """The curve with shares ``common`` (2,) of force and rise, and ``waves`` (2, 2, `_WAVES`): at zero and at
+    `_TURN`."""
     order = np.arange(1, _WAVES + 1)
     shape = np.cos(np.pi * np.outer(curve.indentation / curve.indentation[-1], order))
     shape *= np.sqrt(2.0) / order / np.sqrt((1.0 / order**2).sum())

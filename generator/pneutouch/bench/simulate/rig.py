@@ -24,12 +24,12 @@ from pneutouch.units import GAUGE_LIMIT, KPA
 
 
 def parameter(default: Any, unit: str, reason: str) -> Any:
-    """A dataclass field in an internal unit, with the reason for its default."""
+    """Dataclass field in an internal unit, with the reason for its default."""
     return field(default=default, metadata={"unit": unit, "reason": reason})
 
 
 def parameters(model: Any) -> dict[str, ParameterValue]:
-    """Value, unit and reason of each parameter of a dataclass, by name; an infinite value is null."""
+    """Value, unit and reason of each parameter of a dataclass, by name; the value is None if it is infinite."""
     listed = {}
     for one in fields(model):
         value = getattr(model, one.name)
@@ -81,7 +81,7 @@ class ScatterModel:
 
     @classmethod
     def none(cls) -> ScatterModel:
-        """No scatter at all."""
+        """No scatter and no ageing."""
         return cls(modulus=0.0, wall=0.0, dead_volume=0.0, gain=0.0, reset=0.0)
 
 
@@ -134,7 +134,7 @@ _RATE = 50.0
 
 @dataclass(frozen=True, slots=True)
 class WallMemory:
-    """Terms of the wall's memory: for each, its shares of force and of pressure rise, and its time constant in s."""
+    """Wall memory: for each term its shares of force and of pressure rise, and its time constant in s."""
 
     force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _ASSUMED)
     rise: tuple[float, ...] = parameter(
@@ -162,10 +162,10 @@ class WallMemory:
 
     def held(self, protocol: RunProtocol, nodes: Array) -> tuple[Array, Array]:
         """Matrices (depths, nodes) that give the memory's contribution at the end of every hold from relaxed values at
-        ``nodes``.
+        ``nodes``, travels (mm).
 
-        The first is for the force, the second for the rise, counted from before the plate moves in. The curve is taken
-        as linear between the travels ``nodes``."""
+        The first is for the force, the second for the rise less its value before the plate moves in. The curve is taken
+        as linear between ``nodes``."""
         knots, travels = protocol.knots()
         count = round(float(knots[-1]) * _RATE) + 1
         travel = np.clip(np.interp(np.arange(count) / _RATE, knots, travels), 0.0, nodes[-1])
@@ -245,7 +245,7 @@ class RigModel:
         return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
 
     def with_gauge(self, reading: GaugeReading) -> RigModel:
-        """The rig with what a gauge states of noise, step and range, where this rig still has the paper's values."""
+        """The rig with a gauge's noise, step and range, each where it is stated and this rig has the default."""
         paper = RigModel()
         gauge = {"pressure_noise": reading.noise, "pressure_step": reading.step, "pressure_range": reading.limit}
         changed = {
@@ -256,11 +256,11 @@ class RigModel:
         return replace(self, **changed)
 
     def share(self, rate: float) -> float:
-        """Weight of the latest sample in the low pass at ``rate`` Hz."""
+        """Weight of the latest sample in the low pass at a sampling rate, Hz."""
         return float(-np.expm1(-2.0 * np.pi * self.cutoff / rate))
 
     def passed(self, values: Array, rate: float, start: float) -> Array:
-        """Values (n,) after the low pass, whose output was ``start`` before the first."""
+        """Values (n,) at ``rate`` Hz after the low pass, whose output was ``start`` before the first."""
         share = self.share(rate)
         if share >= 1.0:
             return values
@@ -269,21 +269,20 @@ class RigModel:
         return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[(1.0 - share) * start])[0])
 
     def noise(self, rate: float) -> tuple[float, float]:
-        """Standard deviations of a sample of force (N) and pressure (MPa) in the file: filtered, then rounded to steps.
+        """Standard deviations of a sample of force (N) and pressure (MPa) in the file: filtered, then rounded.
 
-        Rounding adds step^2/12 where the noise is at least half a step (Sheppard).
-        """
+        Rounding adds step^2/12 where the noise is at least half a step (Sheppard)."""
         share = self.share(rate)
         kept = np.sqrt(share / (2.0 - share))
         pressure = np.hypot(self.pressure_noise * kept, self.pressure_step / np.sqrt(12))
         return float(self.force_noise * kept), float(pressure)
 
     def drift(self, driving: float) -> float:
-        """Drift of the shut-in pressure at a driving pressure (MPa), MPa/s: warming less leak."""
+        """Drift of the shut-in pressure, MPa/s, at a driving pressure (MPa): warming less leak."""
         return self.temperature - self.leak * driving
 
     def stepped(self, pressure: Array) -> Array:
-        """Pressure as the recorder writes it: in steps, within its range."""
+        """Pressure (MPa) as the recorder writes it: in steps, within its range."""
         if self.pressure_step > 0:
             pressure = self.pressure_step * np.round(pressure / self.pressure_step)
         return np.clip(pressure, -self.pressure_range, self.pressure_range)
@@ -300,7 +299,8 @@ _DECIMALS = {"time_s": 6, "position_mm": 5, "force_N": 5, "pressure_kPa": 6, "vo
 
 
 def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:
-    """Columns as CSV or parquet, marked as simulated. Raises InputError if pyarrow is required and missing."""
+    """Columns (`_DECIMALS`) as CSV or parquet, marked as simulated. Raises InputError if pyarrow is required and
+    missing."""
     rounded = {name: np.round(values, _DECIMALS[name]) + 0.0 for name, values in columns.items()}
     if not parquet:
         from pandas import DataFrame

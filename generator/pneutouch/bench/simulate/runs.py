@@ -1,4 +1,4 @@
-"""Runs on the simulated rig, and their true values: figures of each specimen and of the population."""
+"""Runs on the simulated rig, and their true values: figures of each specimen and of its population."""
 
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, cast
@@ -42,7 +42,7 @@ class RecordSamples(NamedTuple):
 
 
 def within(protocol: RunProtocol, reach: float) -> RunProtocol:
-    """The protocol with no depth beyond ``reach``: loop and relaxation stop there, other kinds omit deeper steps."""
+    """The protocol without depths beyond ``reach`` (mm): loop and relaxation stop there, others omit deeper steps."""
     if protocol.kind in ("loop", "relaxation"):
         return replace(protocol, depths=tuple(min(depth, reach) for depth in protocol.depths))
     return replace(protocol, depths=tuple(depth for depth in protocol.depths if depth <= reach * (1 + 1e-9)))
@@ -60,8 +60,8 @@ def simulate_run(
 ) -> RecordSamples:
     """Simulate one run at ``rate`` Hz.
 
-    Memory of the wall lasts over the whole run; without contact there is no force. Raises ValueError for a protocol
-    that leaves the curve (see `within`)."""
+    The wall's memory lasts over the whole run; without contact there is no force. Raises ValueError for a protocol that
+    leaves the curve (see `within`)."""
     if not curve.covers(max(protocol.depths)):
         raise ValueError(f"depth {max(protocol.depths):g} mm is beyond the curve, {curve.reach:g} mm")
     knots, travels = protocol.knots()
@@ -77,14 +77,14 @@ def simulate_run(
 def simulate_leak(
     driving: float, seconds: float, rig: RigModel, rate: float, rng: np.random.Generator
 ) -> RecordSamples:
-    """Simulate a leak run: a closed, unpressed sensor at a driving pressure (MPa)."""
+    """Simulate a leak run of a closed, unpressed sensor: driving pressure in MPa, duration in s, ``rate`` in Hz."""
     time = np.arange(round(seconds * rate) + 1) / rate
     still = np.zeros_like(time)
     return _read(rig, rate, rng, RecordSamples(time, still, still, driving + rig.drift(driving) * time))
 
 
 def _pressed(curve: PressCurve, travel: Array, wall: WallMemory, step: float) -> tuple[Array, Array]:
-    """Force and rise with the wall's memory at plate travels (n,); travels below zero are clear of the dome."""
+    """Force (N) and rise (MPa) with the wall's memory at plate travels (n,), mm; below zero the plate is clear."""
     force, rise = np.zeros_like(travel), np.zeros_like(travel)
     touched = travel > 0.0
     force[touched], rise[touched] = curve.at(np.minimum(travel[touched], curve.reach))
@@ -97,7 +97,7 @@ def _pressed(curve: PressCurve, travel: Array, wall: WallMemory, step: float) ->
 
 
 def _shut_in(protocol: RunProtocol, time: Array, set_to: Array, drift: float, rise: Array) -> Array:
-    """Pressure of the shut-in gas; in a rest with reset it is vented and filled again, and drift begins again."""
+    """Pressure of the shut-in gas, MPa, (n,); a rest with reset vents it and fills it again, and drift begins anew."""
     if not protocol.reset or protocol.rest <= 0:
         return np.asarray(set_to[0] + drift * time + rise)
     starts = protocol.knots()[0][:-1:4]
@@ -136,7 +136,7 @@ def _lagging(time: Array, knots: Array, travels: Array, play: float) -> Array:
 
 
 def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: RecordSamples) -> RecordSamples:
-    """Readings of the instruments from the true values."""
+    """Readings of the instruments from the true values, without the samples that are missed."""
     time, position, force, pressure = true
     zero = rng.standard_normal(3)
     noise = rng.standard_normal((3, time.size))
@@ -154,10 +154,10 @@ SPECIMENS = 4000
 """Specimens drawn for the mean and spread of a population: the mean is then known to a sixtieth of the spread."""
 
 STEPS = 28
-"""Equal plate steps of a specimen of the population."""
+"""Equal plate steps for a specimen of a population."""
 
 _ENOUGH = 0.5
-"""Share of the specimens that must reach every depth for a population to be made of them."""
+"""Least share of the specimens that must reach every depth for a population to be made of them."""
 
 _LOOP_RATE = 1000.0
 _FIRST = 1.0
@@ -172,7 +172,7 @@ _KEYS = (
     (STIFFNESS_KEY, "stiffness", 1.0),
     ("force_range_N", "force_high", 1.0),
 )
-"""Figures of a loading curve: key, field of `Figures`, factor."""
+"""Figures of a loading curve: key, field of `Figures`, and factor from the field to the key's unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,15 +191,15 @@ class SimulationTruth:
     specimens: int = SPECIMENS
 
     def protocol(self, kind: str, height: float, reach: float) -> RunProtocol:
-        """The protocol of a kind as it is simulated: its rests shortened to ``rest``, no depth beyond the range."""
+        """Protocol of a kind for an inner height (mm): rests at most ``rest``, depths at most ``reach`` (mm)."""
         reduced = within(protocol(cast(RunKind, kind), height), reach)
         return reduced if self.rest is None else reduced.quicker(min(self.rest, reduced.rest))
 
 
 @dataclass(frozen=True, slots=True)
 class Population:
-    """Sensors of one resin and age at one driving pressure: mean figures by key, their spread over specimens, the
-    number of specimens, and the basis in words."""
+    """Sensors of one resin and age at one driving pressure: mean figures by key (None if undetermined), spread over
+    specimens, number of specimens, and the basis in words."""
 
     figures: dict[str, float | None]
     spread: dict[str, float]
@@ -218,10 +218,10 @@ def loading(curve: PressCurve, steps: RunProtocol, wall: WallMemory) -> tuple[Ar
 
 
 def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, rate: float) -> dict[str, float | None]:
-    """Figures of one specimen at one driving pressure without noise, by key.
+    """Figures of one specimen at one driving pressure without noise, by key; the saturation force may be None.
 
-    Relaxation includes the rig's drift, as a measurement does. The drift is only the rig's, without the wall's recovery
-    after a press."""
+    Relaxation includes the rig's drift, as a measurement does; drift excludes the wall's recovery. ``height`` is the
+    dome's inside, mm; ``rate`` the sampling rate, Hz."""
     steps = truth.protocol("steps", height, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
@@ -264,8 +264,8 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float)
     """Relaxation of force and pressure, percent of the value at 1 s: loss from then to the end of the hold, and per
     decade.
 
-    The drift of the force's zero and of the gas in that time is included, as the rig reads it.
-    The slope is the least-squares line through instants even in log time; a loss counts as positive.
+    The drift of the force's zero and of the gas in that time is included, as in the rig's readings. The slope is the
+    least-squares line through instants even in log time; a loss counts as positive.
     """
     test = truth.protocol("relaxation", height, curve.reach)
     depth = np.array(test.depths[:1])
@@ -289,11 +289,11 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float)
 
 
 def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
-    """The population around a nominal sensor, pressed at its k-th driving pressure.
+    """Population around a nominal sensor, pressed at its k-th driving pressure.
 
     Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's
-    own figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the figures are
-    the nominal sensor's and the only spread is that between runs."""
+    own figure over the atlas's, so that they belong to the model behind the records. Where the atlas does not cover the
+    sensor or too few specimens, the figures are the nominal sensor's and the only spread is that between runs."""
     sensor, curve = pressed.sensor, pressed.curves[k]
     nominal = specimen_figures(curve, truth, sensor.dome.shape.height, rate)
     steps = truth.protocol("steps", sensor.dome.shape.height, curve.reach)
@@ -320,7 +320,7 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
 def _drawn(
     sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
 ) -> tuple[Figures[Array], int] | None:
-    """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
+    """Figures of the nominal sensor (first) and of the specimens that reach every depth, and how many; else None."""
     from pneutouch.mechanics.models.choice import outside
 
     depth = max(steps.depths)
@@ -363,7 +363,7 @@ def _by_key(arrays: Figures[Array]) -> dict[str, float | None]:
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
-    """Mean figures, with the spread of the sensitivity between runs of one specimen and between specimens added."""
+    """Mean figures, plus the sensitivity's spread between runs of one specimen and, as ``parts``, between specimens."""
     slope = mean[SENSITIVITY_KEY]
     return {
         **mean,
@@ -373,5 +373,5 @@ def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: flo
 
 
 def aged(sensor: Sensor, truth: SimulationTruth, days: float) -> Sensor:
-    """The nominal sensor at an age."""
+    """The sensor with the modulus that it has after ``days``."""
     return stiffened(sensor, ageing_factor(truth.scatter, days))
