@@ -1,14 +1,14 @@
 """Statistics of readings: mean, standard deviation, and the fits and formulas of the coupons.
 
-Intervals of few measurements: of a mean over specimens by Student's t, of a standard deviation by chi-square.
+Intervals of few measurements follow Student's t for a mean over specimens, chi-square for a standard deviation.
 
 Three specimens with three runs each are what a lab has. The percentile bootstrap of three values covers far less than
 it states (tests/bench/test_interval.py measures about 75 % for 95 %). For few values Hesterberg (Am. Stat. 69, 371-386,
-2015, DOI 10.1080/00031305.2015.1089789, sections 4.5 and 5.3) uses its standard error, widened by sqrt(n/(n-1)), times
-t with n - 1 degrees of freedom. For a mean the bootstrap's standard error is known without drawing, sqrt((n-1)/n)
-s/sqrt(n), so that the result is s/sqrt(n) times t. Specimens are drawn with all their runs: drawing runs as well would
-count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). Widening does not improve the
-bootstrap of a standard deviation of three; chi-square is exact for normal values.
+2015, DOI 10.1080/00031305.2015.1089789, sections 4.5 and 5.3) uses the bootstrap's standard error, widened by
+sqrt(n/(n-1)), times t with n - 1 degrees of freedom. For a mean the bootstrap's standard error is known without
+drawing, sqrt((n-1)/n) s/sqrt(n), so that the half width is s/sqrt(n) times t. Specimens are drawn with all their runs:
+drawing runs as well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). Widening
+does not improve the bootstrap of a standard deviation of three; chi-square is exact for normal values.
 """
 
 import math
@@ -35,7 +35,7 @@ class Mean:
 
 
 def mean(values: Sequence[float]) -> Mean:
-    """Mean of at least two values. Raises ValueError for fewer."""
+    """Mean of at least two values. Raises ValueError for fewer values."""
     if len(values) < 2:
         raise ValueError("a spread needs at least two values")
     readings = np.asarray(values, float)
@@ -55,7 +55,7 @@ def neo_hookean(stretch: Array, stress: Array) -> tuple[float, float]:
 
 
 def secant_modulus(stretch: Array, stress: Array, strain: float) -> float | None:
-    """Secant modulus in MPa at a strain, interpolated on the curve from the origin; None beyond its end."""
+    """Secant modulus in MPa at a strain, interpolated on the curve from the origin; None past the curve's end."""
     strains = np.concatenate([[0.0], stretch - 1])
     if strains.max() < strain:
         return None
@@ -64,17 +64,17 @@ def secant_modulus(stretch: Array, stress: Array, strain: float) -> float | None
 
 
 def shear_from_young(modulus: float, poisson_ratio: float) -> float:
-    """Shear modulus E / (2 (1 + nu)), MPa, as the paper's Table 1."""
+    """Shear modulus E / (2 (1 + nu)), MPa, as in the paper's Table 1."""
     return modulus / (2 * (1 + poisson_ratio))
 
 
 def dead_volume(cavity: Mean, over_cap_kPa: Mean, over_plug_kPa: Mean, gauge_kPa: float = 0.0) -> Mean:
-    """Dead volume from the pressures that the same push of air makes over a cap and over a plug with a cavity.
+    """Dead volume from the pressures that the same push of air gives over a cap and over a plug with a cavity.
 
     Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in
     one unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the
     standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError if the plug's pressure
-    is not the lower."""
+    is not the lower one."""
     a, b, volume = over_cap_kPa.value, over_plug_kPa.value, cavity.value
     if b >= a:
         raise ValueError("the pressure over the plug must be lower than over the cap")
@@ -96,10 +96,10 @@ class Estimate:
     Attributes:
         value: Mean over specimens of their means over runs; or a standard deviation.
         low: Lower end of the 95 % interval, None if there is none.
-        high: Upper end, likewise.
-        specimens: Number of specimens behind it.
-        runs: Number of runs behind it.
-        over: Source of the scatter: "specimens", "runs", or "" if there is none.
+        high: Upper end of the 95 % interval, None if there is none.
+        specimens: Number of specimens behind the value.
+        runs: Number of runs behind the value.
+        over: Repetitions that the interval is over: "specimens", "runs", or "" without an interval.
     """
 
     value: float
@@ -110,14 +110,14 @@ class Estimate:
     over: str
 
     def holds(self, truth: float) -> bool:
-        """True if the interval holds a value."""
+        """True if there is an interval and it holds ``truth``."""
         return self.low is not None and self.high is not None and self.low <= truth <= self.high
 
 
 def mean_of(groups: Sequence[Array]) -> Estimate:
     """Mean over specimens of their means over runs; ``groups`` has one array of runs, not empty, for each specimen.
 
-    With one specimen the interval is over its runs and does not cover other specimens; with one value there is none.
+    With one specimen the interval is over its runs and does not cover other specimens; one value has no interval.
     """
     runs = sum(len(group) for group in groups)
     if len(groups) > 1:
@@ -132,13 +132,13 @@ def mean_of(groups: Sequence[Array]) -> Estimate:
 
 
 def spread_between(groups: Sequence[Array]) -> Estimate:
-    """Standard deviation (ddof 1) of the specimens' means; it includes runs' scatter over the root of their number."""
+    """Standard deviation (ddof 1) of the specimens' means, with some scatter of runs in it; NaN for one specimen."""
     means = np.array([float(np.mean(group)) for group in groups])
     return _spread(float(means.std(ddof=1)) if means.size > 1 else None, means.size - 1, groups, "specimens")
 
 
 def spread_within(groups: Sequence[Array]) -> Estimate:
-    """Standard deviation between the runs of a specimen, pooled over specimens (ddof 1 each)."""
+    """Standard deviation between the runs of a specimen, pooled over specimens; NaN if none has two runs."""
     freedom = sum(len(group) - 1 for group in groups)
     squares = sum(float(((group - np.mean(group)) ** 2).sum()) for group in groups)
     return _spread(float(np.sqrt(squares / freedom)) if freedom else None, freedom, groups, "runs")
@@ -153,7 +153,7 @@ def _spread(value: float | None, freedom: int, groups: Sequence[Array], over: st
 
 
 def _chi_square(freedom: int) -> tuple[float, float]:
-    """Factors on the estimate of a standard deviation that give the ends of its interval."""
+    """Factors on an estimated standard deviation that give the lower and upper end of its interval."""
     from scipy.special import gammaincinv
 
     tails = 0.5 * (1 + LEVEL), 0.5 * (1 - LEVEL)

@@ -1,1 +1,1 @@
-"""Laws fitted to tension: a curve of nominal stress over stretch in, a hyperelastic law with its misfit out."""
+"""Laws from tensile tests: curves of nominal stress over stretch, and the hyperelastic law fitted to them."""

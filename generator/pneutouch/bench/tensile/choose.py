@@ -1,4 +1,4 @@
-"""Choice of the law of a material, the fewest constants within 5 % of the measured stress, and the modulus of a puck.
+"""Choice of a material's law, with the fewest constants within 5 % of the measured stress; and the modulus of a puck.
 
 A law is stable over the states of a fit where the second derivatives of its energy by the logarithms of two principal
 stretches are positive definite (Drucker 1964; Ogden, Non-linear Elastic Deformations, 1984, section 6.2).
@@ -8,8 +8,7 @@ walls of 0.012 to 0.6 MPa, plate to three quarters of the inner radius, up to 0.
 shipped design at 0, at its rated pressure and at 0.9 of its limit point. The largest first invariant anywhere on the
 faces half a wall away from the clamp is that of uniaxial tension by 1.92 at 0.17 MPa, 1.79 at 0.2 MPa and 2.09, 2.22,
 2.33 and 2.39 at 0.08, 0.05, 0.025 and 0.012 MPa: in a softer wall the trapped gas hardly yields, and the wall bulges
-instead. The reach of ``benchmarks.materials`` measures them again.
-"""
+instead. They are measured again by `reach` in ``benchmarks/materials.py``."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,9 +35,8 @@ _RATIOS = {"uniaxial tension": -0.5, "pure shear": 0.0, "equibiaxial tension": 1
 def instability(name: str, constants: tuple[float, ...], largest: float) -> str | None:
     """First state in which a law is unstable, in words; None for a stable law.
 
-    The states considered have at most the first invariant of uniaxial tension to the stretch ``largest``. Raises
-    InputError for constants that give no solid at all.
-    """
+    The states considered have at most the first invariant of uniaxial tension at the stretch ``largest``. Raises
+    InputError for constants that give no solid at all."""
     law = hyperelastic(name, constants, _POISSON_RATIO)
     most = float(first_invariant(largest))
     for kind, ratio in _RATIOS.items():
@@ -72,7 +70,8 @@ SOFT = 0.1
 """Shear modulus, MPa, below which a wall is stretched further (`REACHED_SOFT`)."""
 
 REACHED, REACHED_SOFT = 2.0, 2.5
-"""Uniaxial stretches that walls, and walls softer than `SOFT`, reach: rounded up from the measured ones above."""
+"""Uniaxial stretches that walls, and walls softer than `SOFT`, reach: the measured ones in the module's text, rounded
+up."""
 
 
 def reached_stretch(shear_modulus: float) -> float:
@@ -81,7 +80,7 @@ def reached_stretch(shear_modulus: float) -> float:
 
 
 MISFIT = 0.05
-"""Greatest misfit of a law that is good enough."""
+"""Greatest misfit of a law that counts as good."""
 
 NEO_HOOKEAN = LawForm("neo-hookean", 1)
 
@@ -98,10 +97,10 @@ first: it depends only on the first invariant, so that a fit in tension also hol
 Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975, p. 215)."""
 
 LAST = LawForm("ogden", 6)
-"""Law tried if none of `FORMS` is good enough: few curves determine all of its six constants."""
+"""Law tried after `FORMS`, if none is good: few curves determine all of its six constants."""
 
 _NEAR_BEST = 0.01
-"""Distance from the least misfit within which the law with the fewest constants is taken if none is good enough."""
+"""Distance from the least misfit within which the law with the fewest constants is taken if none is good."""
 
 _MOST_SLACK, _SLACK_STEPS = 0.08, 81
 _LEAST_SLACK = 0.002
@@ -110,15 +109,15 @@ _LEAST_SLACK = 0.002
 
 @dataclass(frozen=True, slots=True)
 class LawChoice:
-    """The fits of all laws, the one taken and the reason.
+    """Fits of all laws, the law taken, and the reasons against others.
 
     Attributes:
         curves: Fitted curves: without slack, up to the largest stretch.
-        whole: The same curves with the points beyond the range.
+        whole: The same curves with the points beyond the largest stretch.
         largest: Greatest stretch of the fit.
-        fits: The laws that were tried, in the order of `FORMS`; Ogden's only if none before was good enough.
+        fits: Fits in the order of `FORMS` and `LAST`; Ogden's laws are tried only while no other is good.
         refused: Reasons why a law cannot be used, by its index in ``fits``.
-        chosen: Index of the law taken.
+        chosen: Index in ``fits`` of the law taken.
         each: Neo-Hookean shear modulus fitted to each single curve, MPa.
     """
 
@@ -173,7 +172,7 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
 
 
 def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit], dict[int, str]]:
-    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good enough, and why some cannot be used."""
+    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good, and reasons against some, by index."""
     fits: list[LawFit] = []
     refused: dict[int, str] = {}
     good = False
@@ -188,14 +187,14 @@ def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit]
 
 
 def _taken(fits: Sequence[LawFit], usable: Sequence[int]) -> int:
-    """The index of the law to take."""
+    """Index of the law to take: the first of ``usable`` within `MISFIT`, or near the least misfit if none is."""
     least = min(fits[k].misfit for k in usable)
     limit = max(MISFIT, least + _NEAR_BEST) if least > MISFIT else MISFIT
     return next(k for k in usable if fits[k].misfit <= limit)
 
 
 def _refused(fit: LawFit, largest: float) -> str | None:
-    """Reason why a fitted law cannot be taken, or None."""
+    """Reason why a fitted law cannot be taken; None if it can."""
     if not fit.determined:
         return "the data do not determine all of its constants"
     try:
@@ -210,10 +209,10 @@ def _modulus(curves: Sequence[TensionCurve]) -> float:
 
 
 def _slack(curve: TensionCurve, largest: float) -> float:
-    """Strain before the specimen carries load: the value with which Yeoh's law of three terms is nearest to the data.
+    """Strain before the specimen carries load: the one with which Yeoh's law of three terms is nearest to the data.
 
     Grips that slide and a specimen that straightens add to the travel of a crosshead at the beginning. The law goes
-    through the origin whatever its constants, so that the first points decide. 0 where the data begin without slack.
+    through the origin whatever its constants, so that the first points decide. 0 if it is less than `_LEAST_SLACK`.
     """
     near = curve.up_to(largest * (1.0 + _MOST_SLACK))
 
@@ -229,7 +228,7 @@ def _slack(curve: TensionCurve, largest: float) -> float:
 
 
 _LEAST, _MOST = 0.05, 0.4
-"""Compression over thickness that a test must reach, and that is fitted at most."""
+"""Compression over thickness: the least that a test must reach, and the greatest that is fitted."""
 
 _ZEROS = np.linspace(0.0, 0.1, 101)
 """Candidates for the travel before the plate touches, over the thickness."""
@@ -237,7 +236,7 @@ _ZEROS = np.linspace(0.0, 0.1, 101)
 
 @dataclass(frozen=True, slots=True)
 class PuckSize:
-    """Diameter and thickness of a puck in mm; ``bonded`` where its faces cannot slide on the plates."""
+    """Diameter and thickness of a puck in mm; ``bonded`` is True if its faces cannot slide on the plates."""
 
     diameter: float
     thickness: float
@@ -252,7 +251,7 @@ class PuckSize:
 
 @dataclass(frozen=True, slots=True)
 class PuckFit:
-    """Shear modulus in MPa, its k = 2 uncertainty from the scatter of the points, and the misfit of the law.
+    """Neo-Hookean shear modulus in MPa, and ``error``, its k = 2 uncertainty from the scatter of the points.
 
     Attributes:
         stretch: Stretches of the fitted points, below 1, (n,).
@@ -274,8 +273,8 @@ class PuckFit:
 def fit_puck(path: Path, size: PuckSize) -> PuckFit:
     """Fit the neo-Hookean law to a file of compression (mm) and force (N), both positive as the plate goes down.
 
-    Raises InputError for a file that cannot be read, for too few points or too little compression, and for units that
-    no elastomer has.
+    Raises InputError for a file that cannot be read, too few points, too little compression, a compression that falls,
+    or units that no elastomer has.
     """
     layout = layout_of(path)
     pairs = [pair for pair in column_pairs(layout.names, layout.units, str(path)) if pair.length.kind == "travel"]
@@ -300,7 +299,8 @@ def fit_puck(path: Path, size: PuckSize) -> PuckFit:
 
 
 def _fit(travel: Array, stress: Array, thickness: float) -> tuple[float, float, Array, Array, float] | None:
-    """Modulus, twice its standard error, points and misfit; None for too few points or too little compression."""
+    """Modulus, twice its standard error, stretch, stress and misfit; None for too few points or too little
+    compression."""
     near = (travel > 0.0) & (travel <= _MOST * thickness)
     if near.sum() < LEAST_POINTS or travel[near].max() < _LEAST * thickness:
         return None

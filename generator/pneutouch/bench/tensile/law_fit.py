@@ -1,7 +1,6 @@
-"""A hyperelastic law fitted to curves of tension by least squares of the relative difference.
+"""Fit of a hyperelastic law to tensile curves, by least squares of the relative difference of stress.
 
-Nominal stress of the hyperelastic laws in uniaxial tension, incompressible: P = dW/dlambda (Treloar 1975, ch. 5).
-"""
+The nominal stress of an incompressible law in uniaxial tension is P = dW/dlambda (Treloar 1975, ch. 5)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -18,11 +17,10 @@ class TensionCurve:
     """One loading: stretch (n,), rising, and nominal stress (n,) in MPa, force over the undeformed cross-section.
 
     Attributes:
-        file: Its file, for messages.
+        file: File of the curve, for messages.
         notes: Changes made to the numbers when they were read.
-        slack: Strain that was taken off: pulled before the specimen carried load.
-        facts: Entries of the file on the test, such as its machine or its speed.
-    """
+        slack: Strain taken off the data: that before the specimen carried load.
+        facts: Entries of the file on the test, such as its machine or its speed."""
 
     stretch: Array
     stress: Array
@@ -32,13 +30,13 @@ class TensionCurve:
     facts: dict[str, str] = field(default_factory=dict)
 
     def without_slack(self, slack: float) -> "TensionCurve":
-        """The curve with its stretch counted from the onset of load (``slack``), without the points before."""
+        """The curve with its stretch counted from the onset of load at the strain ``slack``, without earlier points."""
         stretch = self.stretch / (1.0 + slack)
         kept = stretch > 1.0
         return replace(self, stretch=stretch[kept], stress=self.stress[kept], slack=slack)
 
     def up_to(self, largest: float) -> "TensionCurve":
-        """The points up to a stretch."""
+        """The curve up to a stretch."""
         kept = self.stretch <= largest * (1.0 + 1e-9)
         return replace(self, stretch=self.stretch[kept], stress=self.stress[kept])
 
@@ -48,7 +46,7 @@ class TensionCurve:
 
 
 def tension_basis(name: str, count: int, stretch: Array) -> Array:
-    """Columns (n, count) that, times the constants, add up to the nominal stress; for laws linear in these."""
+    """Columns (n, count) that add up to the nominal stress when multiplied by the constants; not for Ogden's law."""
     plain, above = stretch - stretch**-2, first_invariant(stretch) - 3.0
     if name == "neo-hookean":
         columns = [plain]
@@ -70,10 +68,10 @@ def tension(name: str, constants: Sequence[float], stretch: Array) -> Array:
 
 
 FROM_STRAIN = 0.1
-"""Strain from which on the misfit is evaluated: below it slack, crosshead and the zero of the load cell dominate."""
+"""Strain above which the misfit is evaluated: below it slack, crosshead and the zero of the load cell dominate."""
 
 WINDOW = 0.1
-"""Stretch over which the differences of neighbouring points are averaged before the greatest of them is taken."""
+"""Width, in stretch, over which the differences of neighbouring points are averaged before the greatest is taken."""
 
 _COVERAGE = 2.0
 
@@ -99,7 +97,7 @@ class LawForm(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The law in words, with its number of terms where it may have several."""
+        """Name of the law, with its number of terms where it may have several."""
         if self.name in ("neo-hookean", "mooney-rivlin"):
             return {"neo-hookean": "neo-Hookean", "mooney-rivlin": "Mooney-Rivlin"}[self.name]
         return f"Yeoh, {self.parameters} terms" if self.name == "yeoh" else f"Ogden, {self.parameters // 2} terms"
@@ -111,9 +109,9 @@ class LawFit:
 
     Attributes:
         errors: Twice the standard errors of the fit. They include only the scatter of the points, not that of batches.
-        misfit: Greatest relative difference of nominal stress to the running mean of the data over `WINDOW`, from a
-            strain of `FROM_STRAIN` on: the mean keeps out the noise of the load cell.
-        worst: Greatest relative difference to the single points.
+        misfit: Greatest magnitude of the relative difference of stress from the data, averaged over `WINDOW` against
+            the load cell's noise, above the strain `FROM_STRAIN`; infinite without points there.
+        worst: Greatest relative difference at a single point; infinite without points.
     """
 
     form: LawForm
@@ -133,7 +131,8 @@ class LawFit:
 
 
 def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array]:
-    """Stretch, stress and the stress that differences are divided by (n,): the point's, at least at `FROM_STRAIN`."""
+    """Stretch, stress, and stress that divides differences, (n,) each: the point's, at least its curve's at
+    `FROM_STRAIN`."""
     stretch = np.concatenate([curve.stretch for curve in curves])
     stress = np.concatenate([curve.stress for curve in curves])
     least = np.concatenate([np.full(curve.stretch.size, curve.stress_at(1.0 + FROM_STRAIN)) for curve in curves])
@@ -162,7 +161,8 @@ def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
 
 
 def difference(fit: LawFit, curve: TensionCurve) -> tuple[Array, Array, Array]:
-    """Stretches from `FROM_STRAIN` on, (n,), and there the relative differences of a law: running mean, points."""
+    """Stretches above `FROM_STRAIN`, relative differences of a law there as running mean, and point by point; (n,)
+    each."""
     far = curve.stretch >= 1.0 + FROM_STRAIN
     stretch, stress = curve.stretch[far], curve.stress[far]
     points = fit.stress(stretch) / stress - 1.0

@@ -1,4 +1,4 @@
-"""A tensile file, read and checked: stretch and nominal stress, in order, in units that an elastomer can have."""
+"""Tensile files, read and checked: stretch and nominal stress, in order, in units that an elastomer can have."""
 
 import re
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ _WORDS = {
     "force": ("force", "load", "kraft"),
     "travel": ("extension", "displacement", "travel", "compression", "indentation", "position", "crosshead", "weg"),
 }
-"""Words of a header, by the kind of column that they mean."""
+"""Words in a header that show the kind of its column."""
 
 _TRUE = ("true", "log", "logarithmic", "hencky", "cauchy")
 _NOMINAL = ("engineering", "nominal", "eng", "eng.", "technical")
@@ -33,17 +33,17 @@ _PERCENT = ("%", "percent", "per cent", "pct")
 _PLAIN = ("", "-", "mm/mm", "m/m", "1", "mm mm-1")
 
 _PAIRS = ((("stretch", "strain"), "stress"), (("stretch", "strain"), "force"), (("travel",), "force"))
-"""Kinds of a length column, and the kind of load column that goes with them, the best pair first."""
+"""Kinds of length column, and the kind of load column that each needs, the best pair first."""
 
 NAMES = "Engineering Strain, Engineering Stress (MPa)"
-"""Names of columns that are understood, for messages."""
+"""Column names that are understood, for messages."""
 
 
 class TensileColumn(NamedTuple):
-    """One column: its name in the file, its kind, ``true`` (else nominal), ``stated`` if its name says so, and its
-    factor to 1, mm, MPa, N.
+    """A column: name, kind (a key of `_WORDS`), ``true`` for true strain or stress (else nominal), ``stated`` if its
+    name says which of the two.
 
-    ``factor`` is None if its name gives no unit."""
+    ``factor`` converts its numbers to 1, mm, MPa or N; None if its name gives no unit."""
 
     name: str
     kind: str
@@ -60,10 +60,9 @@ class ColumnPair(NamedTuple):
 
 
 def column_pairs(names: Sequence[str], units: Sequence[str], file: str) -> list[ColumnPair]:
-    """The pairs that a file has, the best first: nominal before true, stress before force.
+    """Pairs of columns in a file, the best first: nominal before true, stress before force.
 
-    Raises InputError if there is none, where a stress states no unit, or a unit does not belong to its quantity.
-    """
+    Raises InputError if there is none, where a stress states no unit, or a unit does not belong to its quantity."""
     known = [column for pair in zip(names, units, strict=True) if (column := _column(*pair, file)) is not None]
     pairs = []
     for true in (False, True):
@@ -137,7 +136,7 @@ LEAST_POINTS = 8
 """Least number of points of a curve: two for each constant of a law with four, our choice."""
 
 LEAST_STRETCH = 1.2
-"""Stretch that a curve must reach: a shorter curve gives a modulus and no law."""
+"""Stretch that a curve must reach: a shorter curve determines a modulus but no law."""
 
 MODULI = (0.002, STIFFEST_ELASTOMER_MPA)
 """Range of shear moduli, MPa: outside it the numbers are in other units. The softest silicone gels have about 0.005,
@@ -154,7 +153,7 @@ _FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
 
 @dataclass(frozen=True, slots=True)
 class SpecimenSize:
-    """Lengths of a tensile specimen in mm; None: as the file gives it."""
+    """Lengths of a tensile specimen in mm; None for one that the file may state."""
 
     gauge_length: float | None = None
     width: float | None = None
@@ -164,9 +163,8 @@ class SpecimenSize:
 def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
     """The loading curve of a tensile file: text, a workbook or parquet, with a header that names quantity and unit.
 
-    Raises InputError for a file that cannot be read, for units that no elastomer has, for a stretch that falls, for too
-    few points, and where true and engineering columns contradict one another.
-    """
+    Raises InputError for a file that cannot be read, units that no elastomer has, a stretch that falls, a negative
+    stress, too few points, and true and engineering columns that contradict one another."""
     layout, file = layout_of(path), str(path)
     pairs = column_pairs(layout.names, layout.units, file)
     facts = _facts(path)
@@ -185,7 +183,8 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
 
 
 def _first_filled(path: Path, pairs: list[ColumnPair], layout: TableLayout) -> tuple[ColumnPair, Array, Array]:
-    """First pair whose columns hold numbers, with the numbers of its length and its load."""
+    """First pair whose columns hold numbers, and the numbers of its length and load. Raises the first pair's InputError
+    if none does."""
     failures = []
     for pair in pairs:
         try:
@@ -197,7 +196,7 @@ def _first_filled(path: Path, pairs: list[ColumnPair], layout: TableLayout) -> t
 
 
 def _facts(path: Path) -> dict[str, str]:
-    """Lines above the table that state one thing each, such as ``Speed (mm/min);450``."""
+    """Entries of the lines above the table that state one thing each, such as ``Speed (mm/min);450``."""
     if path.suffix.lower() in (".parquet", ".xlsx", ".xlsm", ".tdms"):
         return {}
     facts: dict[str, str] = {}
@@ -261,7 +260,7 @@ def _stress(column: TensileColumn, values: Array, stretch: Array, file: str, siz
 def _agrees(
     path: Path, pairs: list[ColumnPair], layout: TableLayout, used: ColumnPair, stretch: Array, stress: Array
 ) -> None:
-    """Check engineering and true columns against one another, where a file has both."""
+    """Raise InputError if engineering and true columns contradict one another, where a file has both."""
     for other in pairs:
         if other is used or other.load.kind != "stress" or other.length.kind == "travel":
             continue
@@ -292,7 +291,8 @@ def _check_sign(stress: Array, file: str, key: str) -> None:
 
 
 def _loading(curve: TensionCurve) -> TensionCurve:
-    """The points up to the greatest stress, before a break or an unloading, each at a greater stretch than before."""
+    """Points up to the greatest stress, each at a greater stretch than before. Raises InputError if the stretch
+    falls."""
     stretch, stress, notes = curve.stretch, curve.stress, list(curve.notes)
     last = int(np.argmax(stress))
     if (stress[last:] < _BROKEN * stress[last]).any():
@@ -312,7 +312,7 @@ def _loading(curve: TensionCurve) -> TensionCurve:
 
 
 def _plausible(curve: TensionCurve) -> None:
-    """Raise InputError for too few points, too small a largest stretch, or a modulus outside `MODULI`."""
+    """Raise InputError for too few points, a largest stretch that is too small, or a modulus outside `MODULI`."""
     if curve.stretch.size < LEAST_POINTS:
         raise InputError(f"{curve.stretch.size} points", file=curve.file, remedy=f"at least {LEAST_POINTS}")
     most = float(curve.stretch[-1])
@@ -331,7 +331,7 @@ def _plausible(curve: TensionCurve) -> None:
 
 
 def _other_unit(modulus: float) -> str:
-    """Guess in words of the unit that the numbers are in."""
+    """Guess of the unit that the numbers are in, as text; "" without one."""
     if modulus > MODULI[1]:
         return ": are the numbers in kPa and named MPa?"
     return ": are the numbers in MPa and named kPa?" if modulus > 0.0 else ""
