@@ -1,1 +1,1 @@
-"""Tables of numbers in CSV and parquet files, read with one set of messages."""
+"""Tables of numbers in text files, workbooks, parquet and TDMS files, read with one set of messages."""

@@ -1,4 +1,4 @@
-"""Binary tables: sheets of a workbook, parquet in batches of rows, and TDMS, the files of LabVIEW."""
+"""Binary tables: sheets of a workbook, parquet in batches of rows, and TDMS, the format of LabVIEW."""
 
 import datetime
 import warnings
@@ -18,16 +18,16 @@ from pneutouch.tables.layout import RowChunk, TableFormat, TableLayout, library_
 from pneutouch.tables.locate import Located, fewest, header_of, locate
 
 MOST_ROWS, MOST_UNPACKED = 1_000_000_000, 2**30
-"""Greatest number of rows of a file, a day at 10 kHz; and of bytes of one unpacked group of rows, held in memory."""
+"""Greatest number of rows of a file, a day at 10 kHz; and of bytes of an unpacked group of rows, held in memory."""
 
 BATCH = 2**17
-"""Rows per batch: as many as in a chunk of a CSV file."""
+"""Rows per batch, about as many as in a chunk of a CSV file."""
 
 _EXACT = 2.0**53
 
 
 def parquet_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
-    """Layout of a parquet file, whose columns have names but no units. Raises InputError."""
+    """Layout of a parquet file, whose columns have names but no units. Raises InputError for an unreadable file."""
     with _opened_parquet(path) as file:
         names = tuple(str(name) for name in file.schema_arrow.names)
     return TableLayout(names, ("",) * len(names), given, least=len(names))
@@ -102,9 +102,9 @@ _CHANNELS = 1000
 
 
 def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
-    """Layout of the group that ``given`` names, else of the only one with channels of numbers. Raises InputError.
-
-    Channels without a channel of times state start and step of their clock (wf_start_offset, wf_increment)."""
+    """Layout of the group that ``given`` names, else of the only one with all ``known`` channels, else of the only one
+    with channels of numbers. Channels without a channel of times state start and step of their clock
+    (wf_start_offset, wf_increment). Raises InputError if there is no such group, or several."""
     with _opened_tdms(path) as file:
         groups = {group.name: channels for group in file.groups() if (channels := _numeric(path, group))}
         if given.sheet is not None and given.sheet not in groups:
@@ -132,7 +132,7 @@ def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
 
 
 def tdms_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks of a group; see `read.chunks`. Rows are numbered from 1."""
+    """Chunks of the group in ``layout.format.sheet``; see `read.chunks`. Rows are numbered from 1."""
     with _opened_tdms(path) as file:
         channels = [file[layout.format.sheet].channels()[place] for place in places(path, layout, names)]
         total = _length(path, channels)
@@ -194,7 +194,7 @@ def _unit(properties: Any) -> str:
 
 
 def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
-    """First time and step of the channels, s; None if one has no clock, or they differ."""
+    """First time and step of all channels, s; None if they have no clock, or not the same."""
     clocks = {
         (float(one.properties.get("wf_start_offset", 0.0)), float(one.properties.get("wf_increment", 0.0)))
         for one in channels
@@ -230,7 +230,7 @@ _CSV = "save the sheet as CSV"
 
 
 def xlsx_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
-    """Layout of the sheet that ``given`` names, else of the only one with a table of numbers. Raises InputError."""
+    """Layout of the sheet in ``given``, or with all ``known`` columns, or of numbers. Raises InputError if not one."""
     with _workbook(path) as book:
         sheets = {sheet.title: sheet for sheet in book.worksheets[:_SHEETS]}
         if given.sheet is not None and given.sheet not in sheets:
@@ -254,7 +254,7 @@ def xlsx_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
 
 
 def xlsx_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks of a sheet; see `read.chunks`. Rows are numbered as in Excel."""
+    """Chunks of the sheet in ``layout.format.sheet``; see `read.chunks`. Rows are numbered as in Excel."""
     at, row, count = places(path, layout, names), layout.first_row, 0
     with _workbook(path) as book:
         rows = _rows(book[layout.format.sheet], layout.first_row, max(at) + 1)
@@ -295,7 +295,7 @@ def _layout(title: str, located: Located, names: list[str], least: int, given: T
 
 @contextmanager
 def _workbook(path: Path) -> Iterator[Any]:
-    """The workbook, opened for reading. Raises InputError if it is no workbook, too large, or without openpyxl."""
+    """The workbook, opened for reading. Raises InputError if it is none, is too large, or openpyxl is missing."""
     with library_file(path, "Excel", "openpyxl", "xlsx"):
         from openpyxl import load_workbook
 
@@ -315,7 +315,7 @@ def _workbook(path: Path) -> Iterator[Any]:
 
 
 def _rows(sheet: Any, first: int, columns: int = _COLUMNS) -> Iterator[tuple[Any, ...]]:
-    """Cells of the rows from ``first`` on. Raises ValueError for more rows than Excel has, or many empty ones."""
+    """Cells of rows from ``first`` on. Raises ValueError for more rows than Excel has, or many empty ones together."""
     # The size that a sheet states may be wrong.
     sheet.reset_dimensions()
     empty = 0

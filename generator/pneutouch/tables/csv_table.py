@@ -1,4 +1,4 @@
-"""Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
+"""Text tables, read in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
 
 import csv
 import io
@@ -24,9 +24,8 @@ CHUNK = 4 * 2**20
 class _Reader(NamedTuple):
     """A text table with its columns located; ``least`` and ``most`` are the numbers of cells of a row.
 
-    ``stamps`` are the indices of columns with dates and times; ``begin`` has the first time of each, s, once read, and
-    ``latest`` the latest time of day and the number of midnights before it.
-    """
+    ``stamps`` are the indices of columns with dates and times; by such an index ``begin`` has the column's first time,
+    s, and ``latest`` its latest time of day and the number of midnights before it."""
 
     path: Path
     delimiter: str
@@ -122,7 +121,7 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
 
 
 def _after(stream: TextBytes, lines: int) -> bytes:
-    """The first bytes after a number of lines; empty if the file ends before."""
+    """First bytes after a number of lines; empty if the file ends before that."""
     data = stream.read(CHUNK)
     while data:
         at = -1
@@ -137,7 +136,7 @@ def _after(stream: TextBytes, lines: int) -> bytes:
 
 
 def _check_text(data: bytes, row: int, reader: _Reader) -> None:
-    """Check lines, the first of which is ``row``. Raises InputError for text that is not UTF-8 or has zero bytes."""
+    """Raise InputError for bytes that are not UTF-8 or hold a zero byte; ``row`` is the number of their first line."""
     if b"\0" in data:
         at = row + data.count(b"\n", 0, data.index(b"\0"))
         raise reader.fault(at, "holds a zero byte: a binary file", "must be CSV text")
@@ -202,7 +201,8 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
 
 
 def _check_widths(data: bytes, row: int, reader: _Reader) -> Array:
-    """Indices of lines neither empty nor comments. Raises InputError for one of too few or too many fields."""
+    """Indices (n,) of the lines that are neither empty nor comments. Raises InputError for too few or too many
+    fields."""
     kept = []
     # Only line feeds end rows: the other line ends of Unicode belong to the cell.
     for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):
@@ -231,7 +231,7 @@ def _check_width(in_row: Sequence[str], row: int, reader: _Reader) -> None:
 
 
 def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
-    """Raise InputError with row and cell that the fast parser could not read, found cell by cell."""
+    """Raise InputError for the first cell that is not a finite number; ``row`` is the number of the first line."""
     lines = data.decode("utf-8").split("\n")[:-1]
     mark = "decimal point" if reader.decimal == "." else "decimal comma"
     for k, line in enumerate(lines):
@@ -281,7 +281,7 @@ def safe_cell(value: object) -> object:
 
 
 def csv_bytes(head: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
-    """A table as a CSV file in UTF-8: a header row and ``rows``, every cell made safe by `safe_cell`."""
+    """Table as a CSV file in UTF-8: a header row and ``rows``, every cell made safe by `safe_cell`."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(safe_cell(name) for name in head)

@@ -12,7 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 
 CLOCK = "X_Value"
-"""Column name for times in a file that states start and step of a clock instead; LabVIEW's name of times."""
+"""Column name for times in a file that states start and step of a clock instead; LabVIEW's name for times."""
 
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "spaces"}
 """Delimiters by their names; a space stands for any number of spaces and tabs."""
@@ -24,7 +24,7 @@ DECIMALS = {".": "points", ",": "commas"}
 
 @dataclass(frozen=True, slots=True)
 class TableFormat:
-    """Format of a file; None for what is to be detected from the file.
+    """Format of a file; a field that is None is detected from the file.
 
     Attributes:
         delimiter: Delimiter of the cells of a text file; one of `NAMES`.
@@ -51,10 +51,10 @@ class TableLayout:
         format: Format in which the file is read.
         guessed: Keys of ``format`` that were guessed from the numbers or the bytes; not those that the file states,
             such as its delimiter or a byte order mark.
-        header_row: Row of the header, counted from 1; None without header.
-        first_row: Row of the first numbers.
-        least: Least number of cells of a row; the greatest is that of ``names``.
-        clock: First time and step of a file without a column of times, in the unit of `CLOCK`.
+        header_row: Row of the header, counted from 1; None without a header.
+        first_row: Row of the first numbers, counted from 1.
+        least: Least number of cells of a row; the greatest is the number of ``names``.
+        clock: First time and step, s, of a file without a column of times; None if it has one.
         stamps: Indices of the columns with dates and times of day; they are read as seconds from the first.
     """
 
@@ -84,7 +84,7 @@ class TableLayout:
 
     @property
     def all_units(self) -> tuple[str, ...]:
-        """Units of `all_names`."""
+        """Units of `all_names`; s for the times of a clock."""
         return self.units if self.clock is None else ("s", *self.units)
 
 
@@ -129,7 +129,7 @@ def score(row: Sequence[str], decimal: str) -> float:
 
 
 def undecided_comma(rows: Sequence[Sequence[str]]) -> str | None:
-    """A number whose comma may be decimal or one of thousands, if no number of the rows decides which; else None."""
+    """A number whose comma may be decimal or mark thousands, if no number of the rows decides which; else None."""
     commas = [cell for row in rows for cell in row if "," in cell and NUMBER[","].fullmatch(cell)]
     return commas[0] if commas and all(_THOUSANDS.fullmatch(cell) for cell in commas) else None
 
@@ -144,7 +144,7 @@ class RowChunk(NamedTuple):
         total: Number of rows of numbers in the file; for a text file estimated from its bytes.
         last: Values (k, 1) of a complete last row without a line end, whose last number may be cut; not part of
             ``values``; None without such a row.
-        last_row: Number of that row in the file.
+        last_row: Number of the row of ``last`` in the file; 0 without such a row.
     """
 
     rows: Array
@@ -156,7 +156,7 @@ class RowChunk(NamedTuple):
 
 
 def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
-    """Indices of columns; #2 is the second, whatever its name. Raises InputError for one missing or there twice."""
+    """Indices of columns in `TableLayout.names`; #2 is the second. Raises InputError for one missing or there twice."""
     header, indices = layout.names, []
     for name in names:
         if header.count(name) > 1:
@@ -174,9 +174,9 @@ def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
 
 @contextmanager
 def library_file(path: Path, kind: str, library: str, extra: str) -> Iterator[None]:
-    """Context for the import and use of the library of ``extra`` that reads files of a ``kind``.
+    """Context in which ``library``, of the package's ``extra``, is imported and reads a file of a ``kind``.
 
-    Raises InputError if the library is not installed, and in place of all errors of its parsers.
+    Raises InputError if the library is not installed, and in place of the library's own errors.
     """
     try:
         yield

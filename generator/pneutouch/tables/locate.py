@@ -1,8 +1,7 @@
-"""Place of the table in the rows of a file: its header, a row of units, and the first numbers.
+"""Location of the table in the rows of a file: its header, a row of units, and the first numbers.
 
 Sources: NI, Specification for the LabVIEW Measurement File (.lvm), ni.com/tutorial/4139; MTS Series 793 Application
-manual, MultiPurpose TestWare, page 136, How to parse the MPT specimen data file.
-"""
+manual, MultiPurpose TestWare, page 136, How to parse the MPT specimen data file."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,17 +13,18 @@ from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, b
 from pneutouch.tables.unit_words import unit_of
 
 COMMENT = ("#", "%", "!")
-"""Marks that begin a comment."""
+"""Characters that begin a comment."""
 _NO_UNIT = frozenset({"", "-", "%", "°C", "°F", "°", "V", "mV", "V/V", "1", "1/min", "Hz", "mm/min", "mm/s", "MPa/s"})
 _SHORT = 8
 """Number of characters of the longest unit."""
 
 _REMARK = "comment"
-"""Name of the last column of a LabVIEW file, which has text in the first row at most."""
+"""Name of the last column of a LabVIEW file, which has text in its first row at most."""
 
 
 class Located(NamedTuple):
-    """Indices of the header (None without) and of the first row of numbers, from 0; names and units of the columns."""
+    """Indices, from 0, of the header (None without one) and of the first row of numbers; names and units of the
+    columns."""
 
     header: int | None
     first: int
@@ -33,7 +33,7 @@ class Located(NamedTuple):
 
 
 def width_of(rows: Sequence[Sequence[str]], decimal: str) -> tuple[int, float]:
-    """Number of cells of the rows of numbers, and their total score; 0 and 0.0 if no row is one of numbers."""
+    """Number of cells of the rows of numbers, and the total score of these rows; 0 and 0.0 if there is no such row."""
     scores: dict[int, float] = {}
     for row in rows:
         value = score(row, decimal)
@@ -72,9 +72,9 @@ def locate(rows: Sequence[Sequence[str]], decimal: str, header: int | None) -> L
 
 
 def fewest(names: Sequence[str], rows: Sequence[Sequence[str]], decimal: str) -> tuple[list[str], int]:
-    """Names, with one more for empty cells after the last, and the least number of cells of a row.
+    """Names, plus one for empty cells after the last, and the least number of cells of a row.
 
-    A last column without a name, or of LabVIEW's remarks, may be missing from the rows."""
+    A last column without a name, or LabVIEW's column of remarks, may be missing from the rows."""
     names, width = list(names), width_of(rows, decimal)[0]
     numbers = [row for row in rows if len(row) == width]
     if width == len(names) + 1 and numbers and not any(row[-1] for row in numbers):
@@ -90,7 +90,7 @@ def comment(line: str) -> bool:
 
 
 def _first(rows: Sequence[Sequence[str]], decimal: str, width: int) -> int | None:
-    """Index of the first row of numbers that is followed by another or is the last row; None without any."""
+    """Index of the first row of numbers that is the last row or followed by another of numbers; None without any."""
     alike = [k for k, row in enumerate(rows) if len(row) == width and score(row, decimal) > 0]
     for k in alike:
         after = _next(rows, k + 1)
@@ -115,7 +115,7 @@ def _above(rows: Sequence[Sequence[str]], first: int, width: int) -> tuple[int |
 
 
 def _fits(row: Sequence[str], width: int) -> bool:
-    """True if a row can be the header of rows with ``width`` cells: one may be missing, or be extra and empty."""
+    """True if a row can be the header of rows with ``width`` cells: with one cell less, or one more that is empty."""
     return len(row) in (width, width - 1) or (len(row) == width + 1 and row[-1].lower() in ("", _REMARK))
 
 
@@ -135,7 +135,7 @@ _MTS_FIELDS = 6
 
 
 def stated_format(lines: Sequence[str], given: TableFormat) -> TableFormat:
-    """Format ``given`` with the delimiter and the decimal mark that an MTS file states in its first line."""
+    """Format ``given``, completed by the delimiter and decimal mark that an MTS file states in its first line."""
     fields = lines[0].split("|") if lines and lines[0].startswith(_MTS) else []
     if len(fields) < _MTS_FIELDS:
         return given
@@ -149,7 +149,7 @@ def is_lvm(lines: Sequence[str]) -> bool:
 
 
 def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLayout:
-    """Layout of a LabVIEW measurement file. Raises InputError if its header is incomplete, or has several clocks."""
+    """Layout of a LabVIEW file. Raises InputError for an incomplete header, or times that differ between channels."""
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
     tags = _tags(lines[: ends[0]] if ends else lines)
     delimiter = given.delimiter or _delimiter(tags.get("Separator", ""))
@@ -174,19 +174,19 @@ def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLay
 
 
 def _tags(lines: Sequence[str]) -> dict[str, str]:
-    """Tags with the text that follows them, which begins with the delimiter."""
+    """Text after each known tag; it begins with the delimiter."""
     heads = ("Separator", "Decimal_Separator", "X_Columns")
     return {head: line[len(head) :] for line in lines for head in heads if line.startswith(head)}
 
 
 def _delimiter(text: str) -> str:
-    """Delimiter from the text after its tag, which begins with the delimiter and mostly ends with its name."""
+    """Delimiter from the text after its tag, which begins with the delimiter and usually ends with its name."""
     name = text[1:].strip(" ,;\t")
     return _LVM_DELIMITERS.get(name) or (text[0] if text and text[0] in NAMES else "\t")
 
 
 def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: str) -> int:
-    """Least number of cells of a row: without the last column, that of remarks, if rows omit it."""
+    """Least number of cells of a row: one less than ``columns`` if rows omit the last one, of remarks."""
     short = any(len(row) == len(columns) - 1 and score(row, decimal) > 0 for row in numbers)
     return len(columns) - 1 if short and len(columns) > 1 else len(columns)
 
@@ -194,7 +194,7 @@ def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: st
 def _with_clock(
     path: Path, layout: TableLayout, segment: dict[str, list[str]], numbers: Sequence[Sequence[str]]
 ) -> TableLayout:
-    """Layout with the clock of the first channel. Raises InputError if the channels have different clocks."""
+    """Layout with the clock that all channels share. Raises InputError if they have different clocks."""
     clock = []
     for tag in ("X0", "Delta_X"):
         values = {text for text in segment.get(tag, []) if text}

@@ -29,7 +29,7 @@ MOST_NUMBERS = 20_000_000
 
 
 class _Kind(NamedTuple):
-    """A kind of file, with the functions that find its layout and read its rows."""
+    """Functions for a kind of file: one finds its layout, the other reads its rows."""
 
     layout: Callable[[Path, TableFormat, Sequence[str]], TableLayout]
     chunks: Callable[[Path, Sequence[str], TableLayout], Iterator[RowChunk]]
@@ -46,10 +46,10 @@ _KINDS = {
 
 
 def layout_of(path: Path, given: TableFormat = _ANY, known: Sequence[str] = ()) -> TableLayout:
-    """Place and format of the table in a file; parts that ``given`` leaves open are detected from the file.
+    """Layout of the table in a file; fields of ``given`` that are None are detected from the file.
 
     A row that names all of the ``known`` columns is the header. Raises InputError for a file that cannot be read, and
-    for parts of the format that its content does not decide."""
+    if its content does not decide a part of the format."""
     with _readable(path):
         return _kind(path).layout(path, given, known)
 
@@ -74,7 +74,7 @@ def chunks(path: Path, names: Sequence[str], layout: TableLayout | None = None) 
 
 
 def whole(path: Path, names: Sequence[str], layout: TableLayout | None = None) -> tuple[Array, Array]:
-    """Row numbers (n,) and columns (k, n) of a small file. Raises InputError as `chunks`.
+    """Row numbers (n,) and columns (k, n) of a small file. Raises InputError as `chunks`, or for over `MOST_NUMBERS`.
 
     A complete last row without a line end is included: a table typed by hand often ends so, and its last row often has
     the greatest values."""
@@ -98,7 +98,7 @@ def _kind(path: Path) -> _Kind:
 
 
 def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks with the times of the file's clock in place of the column `CLOCK`."""
+    """Chunks of the columns ``names``, with times of the file's clock for the column `CLOCK`."""
     assert layout.clock is not None
     place, (first, step), done = list(names).index(CLOCK), layout.clock, 0
     for part in _kind(path).chunks(path, [name for name in names if name != CLOCK], layout):
@@ -114,7 +114,7 @@ def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Context that turns errors of the system into InputError; also raised for a folder, a device, an empty file."""
+    """Context that turns OSError into InputError; raises it also for a folder, a device or an empty file."""
     try:
         if path.is_dir():
             raise InputError("this is a folder", file=path, remedy="give a file of numbers")

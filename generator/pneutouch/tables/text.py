@@ -1,4 +1,4 @@
-"""Text files of any encoding: detection of the encoding, their first lines, and their bytes in UTF-8."""
+"""Text files of any encoding: detection of encoding and layout, first lines, and bytes in UTF-8."""
 
 import codecs
 import io
@@ -22,7 +22,7 @@ from pneutouch.tables.locate import (
 )
 
 HEAD = 2**18
-"""Number of bytes within which a table must begin: a few thousand rows of what instruments write before it."""
+"""Number of bytes within which a table must begin: more than instruments write before it, a few thousand rows."""
 
 LONGEST_LINE = 2**16
 """Greatest length of a line in bytes: some thousand cells."""
@@ -31,7 +31,7 @@ TOO_LONG = f"over {LONGEST_LINE} bytes without a line end; not a CSV file of num
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _MANY = 0.3
-"""Share of zero bytes, all at even or all at odd places, that shows UTF-16 without a mark: half of them in ASCII."""
+"""Least share of zero bytes, all at even or all at odd places, that shows UTF-16 without a mark: ASCII has half."""
 
 _CONTROL = frozenset(range(32)) - {9, 10, 11, 12, 13, 26, 27, 28, 29, 30, 31}
 _UNDEFINED = frozenset({0x81, 0x8D, 0x8F, 0x90, 0x9D})
@@ -41,7 +41,7 @@ _UNDEFINED = frozenset({0x81, 0x8D, 0x8F, 0x90, 0x9D})
 class TextBytes(io.RawIOBase):
     """Bytes of a text file of any encoding, converted to UTF-8; a byte order mark is omitted.
 
-    Raises InputError, naming the row, for bytes that are not of the encoding."""
+    Raises InputError, naming the row, for bytes that the encoding does not allow."""
 
     def __init__(self, path: Path, stream: BinaryIO, encoding: str) -> None:
         self._path, self._stream, self._encoding = path, stream, encoding
@@ -80,9 +80,9 @@ class TextBytes(io.RawIOBase):
 
 
 def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
-    """Encoding of a file from its first bytes, and True if it was guessed, that is neither marked nor UTF-8.
+    """Encoding of a file from its first bytes, and True if it is a guess: neither marked nor UTF-8.
 
-    Raises InputError for zero bytes and control characters, which do not occur in text."""
+    Raises InputError for zero bytes, and for control characters in text that is not UTF-8."""
     for mark, encoding in _MARKS:
         if start.startswith(mark):
             return encoding, False
@@ -109,7 +109,7 @@ def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
 
 
 def head_lines(path: Path, encoding: str | None) -> tuple[list[str], str, bool]:
-    """First whole lines without line ends, the encoding, and True if that was guessed. Raises InputError."""
+    """First whole lines without line ends, encoding, and True if that was guessed. Raises InputError for no text."""
     with path.open("rb") as stream:
         guessed = False
         if encoding is None:
@@ -136,11 +136,11 @@ _STATE = "state it in the campaign file, or give `delimiter`, `decimal` or `skip
 _FORMAT = '[format]\ndelimiter = ";"  # or "," or "\\t" or " "\ndecimal = ","  # or "."\nskip_rows = 7'
 
 _ORDER = ("\t", ";", ",", " ")
-"""Delimiters in order of preference, for rows that look the same with several."""
+"""Delimiters, the preferred first, for rows that are equally good with several."""
 
 
 def text_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
-    """Layout of a text file; its header is the first row that names the ``known`` columns, or stands above the numbers.
+    """Layout of a text file; its header is the first row with all ``known`` columns, else the one above the numbers.
 
     Raises InputError if no table is found, and if a comma may be either decimal or a separator of thousands."""
     lines, encoding, guessed = head_lines(path, given.encoding)
@@ -192,14 +192,14 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
-    """Cells of a line; for a comment without its mark, because numpy writes a header in that way."""
+    """Cells of a line; those of a comment without its mark, because numpy writes a header as a comment."""
     if blank(line, delimiter):
         return []
     return cells(line.lstrip().lstrip("#").strip() if comment(line) else line, delimiter)
 
 
 def _known_header(rows: Sequence[str], given: TableFormat, known: Sequence[str]) -> tuple[str | None, int | None]:
-    """Delimiter with which a row names all known columns, and the index of the row; None if no row does."""
+    """Delimiter with which a row names all ``known`` columns, and the row's index; the given one and None without."""
     for delimiter in (given.delimiter,) if given.delimiter else _ORDER:
         split = [_cells(line, delimiter) if all(name in line for name in known) else [] for line in rows]
         header = header_of(split, known)
@@ -209,7 +209,7 @@ def _known_header(rows: Sequence[str], given: TableFormat, known: Sequence[str])
 
 
 def _written(rows: Sequence[str], given: TableFormat) -> tuple[str | None, str]:
-    """Delimiter and decimal mark with which the rows have most numbers; by default those given, and a point."""
+    """Delimiter and decimal mark that give the rows most numbers; those given, or None and a point, without numbers."""
     best, chosen = 0.0, (given.delimiter, given.decimal or ".")
     for delimiter in (given.delimiter,) if given.delimiter else _ORDER:
         table = [_cells(line, delimiter) for line in rows]
@@ -221,13 +221,13 @@ def _written(rows: Sequence[str], given: TableFormat) -> tuple[str | None, str]:
 
 
 def _of_header(rows: Sequence[str], header: int | None) -> str:
-    """Delimiter that gives a header most cells, for tables without numbers to decide it."""
+    """Delimiter that gives a header most cells; for tables without numbers, which would decide it."""
     text = "" if header is None else rows[header]
     return max((",", ";", "\t"), key=lambda delimiter: len(cells(text, delimiter)))
 
 
 def _check_header(path: Path, table: Sequence[Sequence[str]], located: Located, begin: int, delimiter: str) -> None:
-    """Check that a header stands above the numbers. Raises InputError if the row above has another number of cells."""
+    """Raise InputError if a row stands above the numbers but is no header, as its number of cells differs."""
     above = [k for k in range(located.first) if table[k]]
     if located.header is not None or not above:
         return

@@ -24,7 +24,7 @@ UNITS: dict[str, dict[str, float]] = {
     },
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
 }
-"""Units of columns by channel, with their factor to the internal units: s, mm, N, MPa, mm3."""
+"""Units of columns by channel, with the factor to the internal unit: s, mm, N, MPa, mm3."""
 
 ABSOLUTE = "_abs"
 """Ending of the units of absolute pressures, from which the ambient pressure is subtracted."""
@@ -73,7 +73,7 @@ _WORDS: dict[str, dict[str, str]] = {
         "L": "l",
     },
 }
-"""Other spellings of the units. A mass stands for its weight."""
+"""Other spellings of the units. A unit of mass means the weight."""
 
 _SMALL = frozenset({"psi", "bar", "lbf", "sec", "mm"})
 
@@ -88,7 +88,7 @@ def _table() -> dict[str, tuple[str, str]]:
 
 _TABLE = _table()
 _LONG = 4
-"""Least length of a word whose case is ignored, as it is for `_SMALL`; in others it tells milli from mega."""
+"""Least length of a word whose case is ignored, as for words of `_SMALL`; in shorter ones it tells milli from mega."""
 
 BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\((?:g|a|abs)\))?)\s*[)\]}>]")
 
