@@ -1,1 +1,1 @@
-"""Scans over textured specimens, and wavelet spectra of the measured pressure."""
+"""Scans over textured specimens, wavelet spectra of the pressure, and detection of patterns in them."""

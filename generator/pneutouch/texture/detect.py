@@ -19,16 +19,17 @@ from pneutouch.texture.scalogram import HIGHEST_SHARE, MORSE, VOICES, Morse, Rid
 from pneutouch.texture.signal import OVERSAMPLING, Signal, decimated
 
 DEGREE = 3
-"""Degree of the polynomial of ln power over ln frequency: 0 is white noise, 1 a power law, 3 low-passed noise plus a
-floor."""
+"""Degree of the polynomial of ln power over ln frequency: 0 for white noise, 1 for a power law, 3 for low-passed noise
+plus a floor."""
 
 _CLIP = 3.0
-"""Limit of a bin's relative excess over the fit: undeclared lines hardly bend it, and 2 % of noise bins are clipped."""
+"""Limit of a bin's relative excess over the fit: other lines hardly bend it, and 2 % of noise bins are clipped."""
 
 
 @dataclass(frozen=True, slots=True)
 class BackgroundFitter:
-    """Fits backgrounds to records of one length: ``taper`` (n,), ``bins`` in use, range of ln f scaled to [-1, 1]."""
+    """Fits noise spectra to records of one length at ``rate`` Hz: ``taper`` (n,), flags of the ``bins`` in use, range
+    ``low`` to ``high`` Hz."""
 
     rate: float
     taper: Array
@@ -37,7 +38,7 @@ class BackgroundFitter:
     high: float
 
     def design(self, frequency: Array) -> Array:
-        """Powers of scaled ln f, (m, DEGREE + 1), constant beyond the fitted range, where the fit is not valid."""
+        """Powers of ln f scaled to [-1, 1], (m, DEGREE + 1), constant outside the range, where no fit is valid."""
         centre, half = np.log(self.low * self.high) / 2, np.log(self.high / self.low) / 2
         place = (np.log(np.clip(frequency, self.low, self.high)) - centre) / half
         return np.stack([place**k for k in range(DEGREE + 1)], axis=-1)
@@ -65,7 +66,7 @@ class BackgroundFitter:
         return np.asarray(np.exp(coefficients @ self.design(frequency).T))
 
     def spectrum(self, coefficients: Array, voices: Array, wavelet: Morse) -> Array:
-        """Root mean square |W| of such noise at voices (k,) Hz, (..., k): the density through each voice's filter."""
+        """Root mean square |W| of noise with that density at voices (k,) Hz, (..., k), through each voice's filter."""
         ratio = np.linspace(0.02, 2.0, 200)
         gain = wavelet.response(ratio) ** 2 * (ratio[1] - ratio[0])
         density = self.density(coefficients, (voices[:, None] * ratio).ravel())
@@ -73,7 +74,7 @@ class BackgroundFitter:
         return np.asarray(np.sqrt(shaped @ gain * voices))
 
     def draw(self, coefficients: Array, number: int, rng: np.random.Generator) -> Array:
-        """Draw ``number`` records (number, n): halves of periodic noise, so that their ends do not meet."""
+        """Draw ``number`` records of noise, (number, n): halves of periodic noise, so that ends do not meet."""
         import scipy.fft
 
         count = len(self.taper)
@@ -88,11 +89,11 @@ class BackgroundFitter:
 def fitter(
     count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
 ) -> BackgroundFitter:
-    """Fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, without ``lines`` (m,) Hz.
+    """Fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, leaving out ``lines`` (m,)
+    Hz.
 
-    Around each line, the share ``band`` and the two bins over which the Hann taper spreads a tone are left out; around
-    ``overtones`` (k,) Hz only those two bins.
-    """
+    Left out around each line are a relative distance ``band`` and the two bins over which the Hann taper spreads a
+    tone; around ``overtones`` (k,) Hz only those two bins."""
     frequency = np.fft.rfftfreq(count, 1 / rate)
     spread = 2 * rate / count
     clear = (np.abs(frequency[:, None] - lines) > band * lines + spread).all(axis=1)
@@ -109,7 +110,7 @@ def detrended(values: Array) -> Array:
 
 
 BAND = 0.15
-"""Share by which a pattern may be off the target frequency: by pitch and speed in the paper it is 11 % off."""
+"""Relative deviation of a pattern from its target frequency that is allowed: 11 % by pitch and speed in the paper."""
 
 CYCLES = 3.0
 """Number of cycles of the target frequency that must lie outside the cone of influence."""
@@ -118,37 +119,36 @@ SURROGATES = 999
 LEVEL = 0.05
 
 _OVERTONES = (2.0, 3.0)
-"""Overtones of a target frequency, at which a pattern with edges has lines, too: bins over which the taper spreads them
-are not noise.
+"""Overtones of a target frequency, at which a pattern with edges has lines too; the bins over which the taper spreads
+them are no noise.
 
-Only these two: patterns whose frequencies are multiples of one another would leave no noise between them.
-"""
+Only these two: patterns whose frequencies are multiples of one another would leave no noise between them."""
 
 _APART = 0.25
-"""Distance in ln f from a line within which the wavelet spectrum is not used as noise: a tone leaks 15 % that far."""
+"""Distance in ln f from a line within which the wavelet spectrum is not taken as noise: a tone leaks 15 % that far."""
 
 _BELOW, _ABOVE = 4.0, 8.0
-"""Range of noise over the target frequency: from a quarter of it, as far as the record allows, to eight times it."""
+"""Range of noise around the target frequency: from a quarter of it, if the record allows that, to eight times it."""
 
 _LEAST_QUIET = 3
-"""Least number of voices without lines for a median."""
+"""Least number of voices away from lines for a median."""
 
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """Result for one target frequency; frequencies in Hz, amplitudes in MPa.
+    """Result at one target frequency; frequencies in Hz, amplitudes in MPa.
 
     Attributes:
         target: The target frequency.
-        frequency: Frequency of the highest point of the time-averaged amplitude within the band.
-        amplitude: Time-averaged amplitude at that point.
+        frequency: Frequency at which the time-averaged amplitude is greatest within `BAND`.
+        amplitude: Time-averaged amplitude at ``frequency``.
         floor: Noise at the target frequency: the time-averaged amplitude expected without a line.
         threshold: Ratio of amplitude to floor that noise alone exceeds in the share ``level`` of records.
-        p_value: Share of noise records with the same ratio or more (Phipson & Smyth 2010, doi 10.2202/1544-6115.1585:
-            the record itself is counted, so never 0), for this frequency only.
+        p_value: Share of noise records with at least that ratio (Phipson & Smyth 2010, doi 10.2202/1544-6115.1585: the
+            record itself is counted, so never 0), for this frequency only.
         surrogates: Number of noise records.
         level: Level of significance.
-        is_ridge: True if the highest point is a maximum inside the band, not the slope of another line.
+        is_ridge: True if the amplitude has a maximum inside the band, not just the slope of another line.
     """
 
     target: float
@@ -174,7 +174,7 @@ class Detection:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Measures amplitude and floor at one target frequency, in the same way for the measured record and for noise."""
+    """Reads amplitude and floor at one target frequency, in the same way from the measured record and from noise."""
 
     fitter: BackgroundFitter
     target: float
@@ -182,7 +182,7 @@ class _Reader:
     quiet: Flags
 
     def read(self, values: Array) -> tuple[Ridge, Array]:
-        """Highest point in the band and floor, (...) each, of records (..., n)."""
+        """Highest point in the band, and floor (MPa), (...) each, of records (..., n)."""
         amplitude = time_average(values, self.fitter.rate, self.voices)
         peak = ridge(amplitude, self.voices, self.target / (1 + BAND), self.target * (1 + BAND))
         coefficients = self.fitter.fit(values)
@@ -200,14 +200,14 @@ def detect(
     seed: int = 0,
     where: str = "signal",
 ) -> tuple[Detection, ...]:
-    """Detection of each target frequency in Hz, in the given order.
+    """Detections at the target frequencies (Hz), in the given order; ``where`` names the signal in messages.
 
     The statistic is the ratio of the highest time-averaged |W| within ``BAND`` of the target frequency, outside the
     cone of influence, to the floor: the median ratio of the time-averaged spectrum to its expected course
     (`BackgroundFitter.spectrum`) away from all target frequencies, times that course at the target. Noise records are
     evaluated in the same way, including the fit. A pattern that fills part of the record counts with that part. Each
     frequency is judged separately: of twenty, one passes by chance. Raises InputError for frequencies that sampling or
-    length of the record cannot resolve, and for a constant signal.
+    length of the record cannot resolve, a constant signal, and too few surrogates.
     """
     _check(given, target, surrogates, level, where)
     lines = np.asarray(target, float)
@@ -239,12 +239,12 @@ def _detect(
 
 
 def least_duration(frequency: float) -> float:
-    """Least duration, s, of a record that can test a frequency in Hz: ``CYCLES`` cycles between two e-folding times."""
+    """Least duration, s, of a record that can test a frequency in Hz: `CYCLES` cycles plus twice the e-folding time."""
     return 2 * float(MORSE.e_folding(np.float64(frequency))) + CYCLES / frequency
 
 
 def _reader(given: Signal, target: float, lines: Array, where: str) -> tuple[_Reader, Array]:
-    """The reader of a signal at one frequency, and the signal's values, decimated and without their linear trend."""
+    """Reader for one target frequency, and the signal's values, decimated and without their linear trend."""
     top = min(_ABOVE * target, HIGHEST_SHARE * given.rate)
     kept = decimated(given, top)
     # A voice of the background must have at least one cycle outside the cone.

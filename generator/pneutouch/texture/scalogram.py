@@ -1,11 +1,10 @@
-"""A scalogram: the wavelet transform of a signal with its times, voices and cone of influence, and its ridges.
+"""Scalogram: wavelet transform of a signal over times and voices (frequencies), its cone of influence and its ridges.
 
 The analytic Morse wavelet transform preserves amplitude: a sinusoid of amplitude A gives |W| = A at its frequency.
 
 Psi(w) = U(w) a w^beta exp(-w^gamma), P^2 = beta gamma (Lilly & Olhede 2012, doi 10.1109/TSP.2012.2210890), with a such
 that Psi is 2 at its peak w = (beta/gamma)^(1/gamma): L1 normalisation, for which equal amplitudes read the same at
-every frequency. gamma = 3 and P^2 = 60 are the defaults of MATLAB's ``cwt``, which the paper's figure 9 states.
-"""
+every frequency. gamma = 3 and P^2 = 60 are the defaults of MATLAB's ``cwt``, which the paper's figure 9 states."""
 
 import math
 from collections.abc import Iterator
@@ -24,13 +23,13 @@ VOICES = 10
 """Voices per octave, MATLAB's default: the half-power band spans three of them."""
 
 HIGHEST_SHARE = 0.4
-"""Greatest voice over sampling rate: from a quarter octave below the Nyquist frequency on, the wavelet is cut off."""
+"""Greatest voice over sampling rate: less than a quarter octave below the Nyquist frequency the wavelet is cut off."""
 
 _SUPPORT = 4.5
-"""Number of e-folding times to the end of a wavelet, where its envelope has fallen to 1e-9 or less."""
+"""Half length of a wavelet in e-folding times: its envelope has fallen to 1e-9 or less there."""
 
 _CUT = 1e-9
-"""Response below which a time average omits bins of the spectrum."""
+"""Response below which bins of the spectrum are left out of a time average."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +45,12 @@ class Morse:
         return self.time_bandwidth / self.gamma
 
     def log_response(self, offset: Array) -> Array:
-        """Logarithm of a voice's response, over its peak, to a tone at ``offset`` = ln(tone over voice), any shape."""
+        """Logarithm of a voice's response to a tone over its peak; ``offset`` is ln(tone over voice), any shape."""
         return self.beta * (offset - np.expm1(self.gamma * offset) / self.gamma)
 
     def response(self, ratio: Array) -> Array:
-        """Response of a voice over frequency / voice, any shape: 2 at 1; 0 for zero and negative frequencies."""
+        """Response of a voice at ``ratio`` = frequency over voice, any shape: 2 at 1; 0 for zero and negative
+        frequencies."""
         with np.errstate(over="ignore"):
             offset = np.log(np.where(ratio > 0, ratio, 1.0))
             return np.where(ratio > 0, 2.0 * np.exp(self.log_response(offset)), 0.0)
@@ -80,9 +80,8 @@ def transform(
     """Wavelet transform of ``values`` (..., n), sampled at ``rate`` Hz, at voices ``frequency`` (k,) Hz: (..., k, n).
 
     ``boundary`` sets the values beyond the ends: ``reflect`` mirrors the record at its first and last sample, ``zero``
-    continues with its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of
-    the rate.
-    """
+    continues with its mean. Neither is data: values within `Morse.e_folding` of the ends are affected. Raises
+    ValueError for voices above ``HIGHEST_SHARE`` of the rate."""
     import scipy.fft
 
     spectrum, pad, total = _spectrum(values, rate, frequency, wavelet, boundary)
@@ -94,11 +93,10 @@ def transform(
 
 
 def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = MORSE) -> Array:
-    """Mean of |W| over the times outside the cone of influence, (..., k), mirrored ends; arguments as in `transform`.
+    """Mean of |W| over the times outside the cone of influence, (..., k), with mirrored ends; see `transform`.
 
     Every voice is sampled as coarsely as its band allows: exact samples of the same transform, in a tenth of the time.
-    Raises ValueError if a voice's cone covers the record.
-    """
+    Raises ValueError if a voice's cone covers the record."""
     import scipy.fft
 
     spectrum, pad, total = _spectrum(values, rate, frequency, wavelet, "reflect")
@@ -135,9 +133,9 @@ def _spectrum(
 def _filtered(
     spectrum: Complex, bin_width: float, frequency: Array, wavelet: Morse, cut: float
 ) -> Iterator[tuple[Complex, float]]:
-    """Half spectrum times the response of each voice, up to where this falls below ``cut``, and the e-folding time.
+    """Half spectrum times each voice's response, up to where that falls below ``cut``, and the voice's e-folding time.
 
-    A half spectrum padded with zeros to the full length is that of the analytic signal, without negative frequencies.
+    A half spectrum padded with zeros to the full length gives the analytic signal, without negative frequencies.
     """
     bins = np.arange(spectrum.shape[-1]) * bin_width
     for voice in frequency:
@@ -157,19 +155,20 @@ class Scalogram:
 
     @property
     def amplitude(self) -> Array:
-        """Amplitudes in MPa, (k, n)."""
+        """Amplitudes |W| in MPa, (k, n)."""
         return np.abs(self.values)
 
     @property
     def inside(self) -> Flags:
-        """True where the record's ends have no influence, (k, n): at least an e-folding time from both."""
+        """Flags (k, n) of points free of influence from the record's ends: at least an e-folding time from both."""
         edge = self.wavelet.e_folding(self.frequency)[:, None]
         both = (self.time - self.time[0] >= edge) & (self.time[-1] - self.time >= edge)
         return np.asarray(both, bool)
 
 
 class Ridge(NamedTuple):
-    """Frequency in Hz and amplitude of ridges, (...); ``inner`` is False if the range has no maximum inside."""
+    """Frequency in Hz and amplitude of a highest point, (...); ``inner`` is False if the range has no maximum
+    inside."""
 
     frequency: Array
     amplitude: Array
@@ -202,8 +201,9 @@ def scalogram(
 def ridge(amplitude: Array, frequency: Array, low: float, high: float, wavelet: Morse = MORSE) -> Ridge:
     """Highest point between ``low`` and ``high`` Hz of amplitudes (..., k) at evenly spaced voices (k,), ascending.
 
-    A parabola through the logarithms of three voices over ln f, after subtraction of the wavelet's own deviation from a
-    parabola: for a pure tone only rounding remains. Raises ValueError if no voice lies in the range.
+    It is the vertex of a parabola through the logarithms of three voices over ln f, without the wavelet's own deviation
+    from a parabola: for a pure tone only rounding remains. Raises ValueError without a voice and its neighbours in the
+    range.
     """
     within = np.flatnonzero((frequency >= low) & (frequency <= high))
     within = within[(within > 0) & (within < len(frequency) - 1)]
@@ -220,7 +220,7 @@ def ridge(amplitude: Array, frequency: Array, low: float, high: float, wavelet: 
 
 
 def _vertex(logs: Array, step: float, wavelet: Morse) -> tuple[Array, Array]:
-    """Offset of the maximum of ``logs`` (3, ...) from the middle voice, and its height, both logarithmic."""
+    """Offset in ln f of the maximum of ``logs`` (3, ...) from the middle voice, and logarithm of its height."""
     places = np.array([-step, 0.0, step]).reshape(3, *[1] * (logs.ndim - 1))
     offset = np.zeros(logs.shape[1:])
     height = logs[1]

@@ -1,4 +1,4 @@
-"""Driving pressure that shows a pattern, and dome that separates two patterns: many domes at once, by the atlas."""
+"""Driving pressure at which a sensor shows a pattern, and domes that separate two patterns; by the atlas."""
 
 import math
 from typing import NamedTuple
@@ -15,21 +15,21 @@ from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude
 from pneutouch.units import KPA
 
 BLUR = (0.85, 1.0, 1.15)
-"""Factors on the predicted contact radius over which an amplitude is a root mean square. A real patch has no sharp
-edge, so its filter has no zeros; a dome must not be selected because it is at a zero."""
+"""Factors on the predicted contact radius; an amplitude is the root mean square over them. A real patch has no sharp
+edge, so its filter has no zeros; a dome must not be selected because it has a zero there."""
 
 LEAST_RATIO = 3.0
-"""Least ratio of amplitude to noise of a pattern in the state meant for it."""
+"""Least ratio of a pattern's amplitude to noise in the state (driving pressure) that is to show it."""
 
 LEAST_TRAVEL = 0.025
-"""Indentation over R0 from which the atlas's contact radius is smooth; below it, it jumps from element to element."""
+"""Indentation over R0 above which the atlas's contact radius is smooth; below, it jumps from element to element."""
 
 POINTS = 23
 """Number of driving pressures examined."""
 
 
 class BarPattern(NamedTuple):
-    """Bars with equal bars and gaps, by pitch and depth in mm."""
+    """Row of bars as wide as the gaps between them, by pitch and depth in mm."""
 
     pitch: float
     depth: float
@@ -42,7 +42,8 @@ class BarPattern(NamedTuple):
 
 
 class PressureAdvice(NamedTuple):
-    """A driving pressure (MPa), the amplitudes at it and at zero pressure (MPa), and all those examined, (n,) each."""
+    """Best driving pressure, amplitudes at it and at zero pressure, and all pressures tried with amplitudes (n,);
+    MPa."""
 
     driving_pressure: float
     amplitude: float
@@ -52,10 +53,10 @@ class PressureAdvice(NamedTuple):
 
 
 class Separation(NamedTuple):
-    """Domes, best first, (n,) each: number, pressures of the two states (MPa), amplitudes (n, 2 states, 2 patterns).
+    """Domes, best first, (n,): number, driving pressures of two states (MPa), amplitudes (n, 2 states, 2 patterns).
 
-    The first state favours the first pattern; ``contrast`` is the factor by which it does so more than the second.
-    """
+    The first state favours the first pattern, the second the other; ``contrast`` is the ratio of A1/A2 between the
+    states."""
 
     dome: Array
     pressures: Array
@@ -64,7 +65,7 @@ class Separation(NamedTuple):
 
 
 def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) -> float:
-    """Reading of white noise (MPa rms a sample) at a voice (Hz), MPa: mean of |W|, whose parts are Gaussian."""
+    """Mean |W| of white noise (MPa rms a sample) at a voice (Hz), MPa; its two parts are Gaussian."""
     ratio = np.linspace(0.02, 2.0, 400)
     power = float(np.sum(MORSE.response(ratio) ** 2)) * float(ratio[1] - ratio[0])
     return noise * math.sqrt(power * frequency / rate) * math.sqrt(math.pi) / 2.0
@@ -89,8 +90,8 @@ def recommend(
 ) -> PressureAdvice:
     """Driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
-    The sensor must lie in the atlas. Raises InputError if it does not reach the preload at any pressure.
-    """
+    The sensor must lie in the atlas. Raises InputError if it never reaches the preload (N), or for an impossible
+    pattern."""
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)
     levels = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]
@@ -110,12 +111,11 @@ def separate(
     patterns: tuple[BarPattern, BarPattern],
     floor: tuple[float, float],
 ) -> Separation:
-    """Rank domes by the difference with which two driving pressures weight two patterns.
+    """Rank domes by how differently they show two patterns at two driving pressures.
 
-    ``dome`` (n,) has the same number for the rows of ``batch`` that are one dome at several pressures; ``floor`` is the
-    noise of each pattern, MPa. Contrast: (A1/A2 in the first state) over (A1/A2 in the second), with amplitudes of at
-    least their floor; in its state, a pattern must be at least ``LEAST_RATIO`` times its floor.
-    """
+    Rows of ``batch`` with the same number in ``dome`` (n,) are one dome at several pressures; ``floor`` is the noise at
+    each pattern's frequency, MPa. Contrast: (A1/A2 in the first state) over (A1/A2 in the second), with amplitudes of
+    at least their floor. A dome is left out unless each pattern is `LEAST_RATIO` times its floor in its state."""
     for pattern in patterns:
         check(pattern, matrix)
     levels = amplitudes(batch, preload, matrix, list(patterns))
@@ -141,7 +141,7 @@ def separate(
 
 
 def check(pattern: BarPattern, matrix: MatrixLayer) -> None:
-    """Raise InputError for a pattern that a specimen cannot have."""
+    """Raise InputError for a pattern that does not fit the specimen ``matrix``."""
     if not (0.0 < pattern.pitch < np.inf and 0.0 <= pattern.depth < matrix.height):
         raise InputError(
             f"pattern {pattern.pitch:g}@{pattern.depth:g}: pitch must be more than 0 and depth from 0 to less than the "

@@ -16,14 +16,13 @@ from pneutouch.tables.read import whole
 from pneutouch.units import KPA
 
 OVERSAMPLING = 5.0
-"""Sampling rate kept over the highest target frequency."""
+"""Least sampling rate that is kept, over the highest target frequency."""
 
 _PASSED = 1.6
-"""Highest frequency passed, over the highest target frequency: the Morse response (3, 60) is 2e-5 of its peak there."""
+"""Highest frequency passed, over the highest target frequency: the Morse response (3, 60) has fallen to 2e-5 there."""
 
 _STOP_DB = 100.0
-"""Attenuation in dB of the part that is aliased, and level of the ripple in the pass band below its amplitude: 1e-5 of
-the amplitude."""
+"""Attenuation in dB of the part that is aliased, and of the ripple in the pass band: 1e-5 of the amplitude."""
 
 MOST = 1e6 * KPA
 """Greatest plausible pressure, MPa: a million kPa."""
@@ -59,8 +58,8 @@ class Signal:
 def signal(time: Array, pressure: Array, where: str = "signal", rows: Sequence[int] | None = None) -> Signal:
     """Signal from times in s and pressures in MPa, (n,) each.
 
-    ``where`` and ``rows`` (n,) name the source and its rows in messages; by default rows count from 1. Raises
-    InputError for fewer than 4 rows, non-finite values, and times that repeat, go back, leave a gap or are uneven.
+    ``where`` names the source, ``rows`` (n,) its rows in messages; if None, rows count from 1. Raises InputError for
+    fewer than 4 rows, values that are not finite or no pressure, and times that do not rise evenly.
     """
     numbers = range(1, len(time) + 1) if rows is None else rows
     if len(time) != len(pressure):
@@ -117,10 +116,11 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
 
 
 def decimated(given: Signal, highest: float) -> Signal:
-    """Every q-th sample of a signal without aliases, with the largest q that keeps ``OVERSAMPLING`` x ``highest`` Hz.
+    """Signal with every q-th sample, without aliases; q is the largest that keeps a rate of `OVERSAMPLING` x
+    ``highest`` Hz.
 
-    A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), with mirrored ends: amplitudes up
-    to 1.6 ``highest`` stay within 1e-5. If q is 1, the signal itself.
+    A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), with mirrored ends: up to 1.6
+    ``highest`` it keeps amplitudes within 1e-5. If q is 1, the signal itself.
     """
     from scipy.signal import firwin, kaiser_beta, upfirdn
 
@@ -143,7 +143,7 @@ def decimated(given: Signal, highest: float) -> Signal:
 
 @dataclass(frozen=True, slots=True)
 class RecordColumns:
-    """Column names in the file's header; the units are s and kPa gauge, independent of the names."""
+    """Names of the columns in the file's header; their units are s and kPa gauge, whatever the names."""
 
     time_s: str = "time_s"
     pressure_kPa: str = "pressure_kPa"
@@ -152,8 +152,7 @@ class RecordColumns:
 def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
     """Signal in a file; other columns are ignored.
 
-    Raises InputError, naming file, row and column, as `tables.read.chunks`, if one column is named for both, and for
-    uneven sampling (`signal`).
+    Raises InputError as `tables.read.chunks` and `signal`, and if one column is named for both time and pressure.
     """
     names = columns.time_s, columns.pressure_kPa
     if names[0] == names[1]:

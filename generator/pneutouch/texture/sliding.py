@@ -1,11 +1,10 @@
 """A dome at a preload slides over a specimen at constant height or constant force, and its pressure is recorded.
 
 The plate is flat, rigid and frictionless, the gas trapped (Boyle, with the dead volume): the specimen deforms far less
-than the dome (`substrate`). Dome (stiffness k) and specimen (compliance c) are springs in series. At constant height
-delta(F) + c(x) F = const, so that dp = -dp/d(delta) F dc/(1 + k c) to first order (physics.md 4.2); here the whole
-curve of the dome is used. At constant force only the sensor's height follows the specimen. Friction, inertia,
-relaxation and relief are neglected.
-"""
+than the dome (`texture.substrate`). Dome (stiffness k) and specimen (compliance c) are springs in series. At constant
+height delta(F) + c(x) F = const, so that dp = -dp/d(delta) F dc/(1 + k c) to first order (physics.md 4.2); here the
+whole curve of the dome is used. At constant force only the sensor's height follows the specimen. Friction, inertia,
+relaxation and relief are neglected."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -24,14 +23,14 @@ from pneutouch.texture.substrate import BarRow, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 _COLUMNS = 61
-"""Number of plate heights of a loading curve; Hermite cubics with the exact slopes in between."""
+"""Number of plate heights of a loading curve, with Hermite cubics of exact slopes in between."""
 _SOLID_STEPS = 30
 _HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True)
 class PreloadContact:
-    """One driving pressure at one preload; mm, N, MPa.
+    """A dome at one driving pressure and one preload; mm, N, MPa.
 
     Attributes:
         driving_pressure, preload: As given.
@@ -40,8 +39,7 @@ class PreloadContact:
         pressure_slope: dp/d(indentation), MPa/mm, gas included.
         model: Name of the model that was used.
         travel, force, rise: Loading curve, (n,), from first contact on; rise is above the driving pressure.
-        force_slope, rise_slope: Derivatives of force and rise by travel, (n,).
-    """
+        force_slope, rise_slope: Derivatives of force and rise by travel, (n,)."""
 
     driving_pressure: float
     preload: float
@@ -62,7 +60,7 @@ class PreloadContact:
         return _along(indentation, self.travel, self.force, self.force_slope)
 
     def force_slope_at(self, indentation: Array) -> Array:
-        """Derivative of the force, N/mm, linear between the curve's points: approximate, as Newton's method allows."""
+        """Derivative of the force, N/mm, linear between the curve's points: good enough for Newton's method."""
         return np.interp(indentation, self.travel, self.force_slope)
 
     def pressure_at(self, indentation: Array) -> Array:
@@ -71,7 +69,7 @@ class PreloadContact:
 
 
 class PreloadContacts(NamedTuple):
-    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN if the atlas does not reach the preload."""
+    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN where the atlas does not reach the preload."""
 
     indentation: Array
     contact_radius: Array
@@ -80,11 +78,11 @@ class PreloadContacts(NamedTuple):
 
 
 def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadContact:
-    """Press the dome at a driving pressure (MPa) to a preload (N): by the atlas, or by the solid outside the atlas.
+    """Press the dome at a driving pressure (MPa) to a preload (N), by the atlas; by the solid where the atlas ends
+    before.
 
     Raises InputError for a preload that is not positive or not reached within the sensor's depth, and for pressures
-    that are negative, beyond the limit point or beyond the pressure sensor's range.
-    """
+    that are negative, beyond the limit point or beyond the pressure sensor's range."""
     _check_preload(sensor, driving_pressure, preload)
     curve = None if outside("atlas", sensor) else _atlas_curve(sensor, driving_pressure)
     model = "atlas"
@@ -121,7 +119,8 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
 
 
 def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
-    """Many sensors at a preload (N), by the atlas; the batch must lie inside its box and below the limit points."""
+    """Many sensors at a preload (N), by the atlas, which must cover the batch; pressures must be below the limit
+    points."""
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     press = AtlasPress(batch, shipped().slices(walls, ("contact_radius",)), k)
     depth = batch.depth / batch.inner_radius
@@ -164,11 +163,11 @@ def _beyond(pressure: float, limit: float) -> InputError:
 
 
 LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
-"""Travel, force, rise, contact radius, slopes of force and rise; the last axis along the travel."""
+"""Travel (mm), force (N), rise (MPa), contact radius (mm), slopes of force and rise by travel, along the last axis."""
 
 
 def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
-    """The curve as far as the atlas covers it; None if it covers fewer than four points."""
+    """The curve as far as the atlas covers it; None for fewer than four points."""
     batch = batch_of(sensor, [pressure])
     press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
     track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])
@@ -240,7 +239,7 @@ RATE = RECORDER_RATE_HZ
 """Samples a second, Hz; paper, Supplement C."""
 
 STEP, NOISE = PAPER_STEP, PAPER_NOISE
-"""Step of the recorder and white noise of a sample, MPa rms, of the paper's gauge."""
+"""Step of the recorder, MPa, and white noise of a sample, MPa rms, of the paper's gauge."""
 
 _NODES = 2**14
 _NEWTON = 6
@@ -258,7 +257,7 @@ class ScanPath:
 
 @dataclass(frozen=True, slots=True)
 class Recorder:
-    """The pressure's recorder: samples a second, noise (MPa rms), step and range (MPa), seed of the noise."""
+    """Recorder of the pressure: samples a second, noise (MPa rms), step and range (MPa), seed of the noise."""
 
     rate: float = RATE
     noise: float = NOISE
@@ -269,10 +268,9 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class TextureScan:
-    """A scan: the recorded signal, the pressure without noise, and the position (mm), (n,) each.
+    """A scan: recorded signal, pressure without noise (MPa) and position (mm), (n,) each.
 
-    ``height``: of the sensor above its height at the preload, mm; not zero at constant force.
-    """
+    ``height``, (n,), is the sensor's height above that at the preload, mm; not zero at constant force."""
 
     signal: Signal
     clean: Array
@@ -285,14 +283,15 @@ class TextureScan:
 
 
 def gain(touch: PreloadContact, compliance: float) -> float:
-    """Pressure by the specimen's compliance at constant height, MPa per mm/N: -dp/d(delta) F/(1 + k c)."""
+    """Derivative of the pressure by the specimen's compliance (mm/N) at constant height, MPa N/mm: -dp/d(delta) F/(1 +
+    k c)."""
     return -touch.pressure_slope * touch.preload / (1.0 + touch.stiffness * compliance)
 
 
 def pressure_amplitude(
     touch: PreloadContact, substrate: Substrate, bars: BarRow, control: Control = "height", order: int = 1
 ) -> float:
-    """Amplitude of the pressure at a pattern's frequency, MPa, to first order; not negative, 0 at constant force."""
+    """Amplitude of the pressure, MPa, at ``order`` times a pattern's frequency, to first order; 0 at constant force."""
     if control == "force":
         return 0.0
     response = gain(touch, float(substrate.compliance(_NODES).mean())) * substrate.amplitude(bars, order)
@@ -300,7 +299,8 @@ def pressure_amplitude(
 
 
 def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
-    """Slide a dome over a specimen. Raises InputError for an impossible path or indentation beyond its curve."""
+    """Slide a dome over a specimen. Raises InputError for an impossible path, a pattern finer than `LEAST_PITCH`
+    allows, or indentation beyond the dome's curve."""
     _check(touch, substrate, path, recorder)
     time = (
         np.arange(int(np.floor((path.end - path.start) / path.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
@@ -320,7 +320,7 @@ def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: 
 
 
 def record(pressure: Array, recorder: Recorder) -> Array:
-    """Pressures as recorded: with noise, rounded to steps, limited to the range."""
+    """Pressures (MPa) as recorded: with noise, rounded to steps, clipped to the range."""
     noisy = pressure + recorder.noise * np.random.default_rng(recorder.seed).standard_normal(len(pressure))
     if recorder.step > 0:
         noisy = recorder.step * np.round(noisy / recorder.step)
@@ -361,4 +361,4 @@ def _check(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder
 
 
 LEAST_PITCH = 0.5
-"""Least pitch over contact radius: k rho = 4 pi, the fourth lobe of the patch filter."""
+"""Least pitch over contact radius: k rho = 4 pi, in the fourth lobe of the patch's filter."""
