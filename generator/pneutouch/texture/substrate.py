@@ -29,11 +29,11 @@ _STEP = 0.05
 """Greatest wavenumber and step of the integral over a disc's field, over 1/radius: compliances accurate to 3e-4."""
 
 FIRST_ZERO = 3.8317
-"""Value of k rho at which the patch does not respond to a pattern: first zero of J1; rho is then 0.61 pitches."""
+"""First zero of J1: value of k rho at which the patch does not respond to a pattern; rho is then 0.61 pitches."""
 
 
 def patch_filter(k: Array, radius: Array | float) -> Array:
-    """Share of a pattern that remains under a uniform disc: 2 J1(k rho)/(k rho); physics.md 4.2."""
+    """Share of a pattern that remains under a uniform disc: 2 J1(k rho)/(k rho), k in 1/mm; physics.md 4.2."""
     from scipy.special import j1
 
     x = np.maximum(k * radius, 1e-9)
@@ -41,16 +41,15 @@ def patch_filter(k: Array, radius: Array | float) -> Array:
 
 
 def half_space(k: Array, shear: float, poisson: float) -> Array:
-    """Deflection over pressure of a half-space at wavenumbers k, mm/MPa: (1 - nu)/(mu k); Johnson, ch. 13."""
+    """Deflection over pressure of a half-space at wavenumbers k (1/mm), mm/MPa: (1 - nu)/(mu k); Johnson, ch. 13."""
     return np.asarray((1.0 - poisson) / (shear * k))
 
 
 def bonded_layer(k: Array, height: float, shear: float, poisson: float) -> Array:
-    """Deflection over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0.
+    """Deflection over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0 (1/mm).
 
     (1-nu)/(mu k) (c sinh 2q - 2q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k h, c = 3 - 4 nu: at nu = 1/2 the formula of
-    physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer independently.
-    """
+    physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer independently."""
     q, c = k * height, 3.0 - 4.0 * poisson
     e = np.exp(-2.0 * q)
     # Both sides over exp(2q)/2, so that nothing overflows; sinh itself for small q, so that nothing cancels.
@@ -60,7 +59,8 @@ def bonded_layer(k: Array, height: float, shear: float, poisson: float) -> Array
 
 
 def reaching(k: Array, depth: float, poisson: float) -> Array:
-    """Pressure on a rigid plate at ``depth`` over the pressure on top, at wavenumbers k; 1 as k or depth goes to 0.
+    """Pressure on a rigid plate at ``depth`` over the pressure on top, at wavenumbers k; 1 in the limit of k or depth
+    0.
 
     (1+c)((1+c)/2 cosh q + q sinh q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k d, c = 3 - 4 nu. For great depth at nu = 1/2
     it is twice the (1 + kd) exp(-kd) of a half-space (physics.md 4.2), because the plate reflects the load.
@@ -85,7 +85,7 @@ class MatrixLayer(NamedTuple):
     poisson_ratio: float
 
     def compliance(self, radius: Array, height: float | None = None) -> Array:
-        """Mean deflection under a uniform disc over its force, mm/N, radii (n,); ``height`` replaces the layer's."""
+        """Mean deflection under a uniform disc over its force, mm/N, radii (n,); ``height`` (mm) or the layer's."""
         depth = self.height if height is None else height
         if depth <= 0.0:
             return np.zeros_like(radius)
@@ -101,7 +101,7 @@ class MatrixLayer(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BarRow:
-    """One row of stiff bars; mm. ``depth`` is that of their tops, ``edges`` (n, 2) are their sides along the path."""
+    """One row of stiff bars; mm. ``depth`` is the depth of their tops, ``edges`` (n, 2) are their sides on the path."""
 
     name: str
     pitch: float
@@ -112,11 +112,11 @@ class BarRow:
 
     @property
     def duty(self) -> float:
-        """Covered share of the patterned part."""
+        """Share of the patterned part that bars cover."""
         return self.width / self.pitch
 
     def harmonic(self, order: int = 1) -> float:
-        """Amplitude of a harmonic of the covered share: 2 |sin(n pi w/p)|/(n pi)."""
+        """Amplitude of the n-th harmonic of the covered share: 2 |sin(n pi w/p)|/(n pi), n = ``order``."""
         return float(2.0 * abs(np.sin(order * np.pi * self.duty)) / (order * np.pi))
 
     def series(self, length: float, orders: int) -> Array:
@@ -127,7 +127,7 @@ class BarRow:
         return np.asarray((share * np.exp(-2j * np.pi * n * middle / length)).sum(axis=1))
 
     def covers(self, place: Array) -> Array:
-        """Flags (n,): 1 for positions with a bar below, else 0."""
+        """Array (n,): 1 for positions (mm) with a bar below, else 0."""
         inside = (place[:, None] >= self.edges[:, 0]) & (place[:, None] < self.edges[:, 1])
         return np.asarray(inside.any(axis=1), float)
 
@@ -141,12 +141,12 @@ class BarRow:
 
 
 def contrast(matrix: MatrixLayer, depth: float, radius: Array) -> Array:
-    """Compliance over a gap minus compliance over a bar, mm/N, patch radii (n,)."""
+    """Compliance over a gap minus compliance over a bar with its top at ``depth``, mm/N, for patch radii (n,)."""
     return np.asarray(matrix.compliance(radius) - matrix.compliance(radius, depth))
 
 
 def amplitude(matrix: MatrixLayer, bars: BarRow, radius: Array, order: int = 1) -> Array:
-    """Amplitude of a row's compliance at a harmonic of its pitch, mm/N, patch radii (n,), as the only row.
+    """Amplitude, mm/N, of a row's compliance at a harmonic of its pitch, for patch radii (n,); no other rows are there.
 
     Negative where the patch sinks more with its centre over a bar: beyond the first zero of the patch filter.
     """
@@ -159,7 +159,7 @@ def amplitude(matrix: MatrixLayer, bars: BarRow, radius: Array, order: int = 1) 
 
 @dataclass(frozen=True)
 class Substrate:
-    """A specimen under a patch of a radius: its compliance along a path of ``length`` mm, periodic over that length."""
+    """A specimen under a patch of ``radius`` mm: compliance along a path of ``length`` mm, periodic over it."""
 
     matrix: MatrixLayer
     bars: tuple[BarRow, ...]
@@ -173,7 +173,7 @@ class Substrate:
 
     @cached_property
     def shares(self) -> tuple[float, ...]:
-        """Mean over bare compliance for each row as the only one, over the part of the path that it fills."""
+        """Mean over bare compliance for each row as if it were the only one, over the part of the path it fills."""
         taken = [float(contrast(self.matrix, row.depth, np.array(self.radius))) for row in self.bars]
         return tuple(1.0 - row.duty * part / self.bare for row, part in zip(self.bars, taken, strict=True))
 
@@ -183,12 +183,12 @@ class Substrate:
         return float(np.prod([share for other, share in pairs if _meet(row, other)]))
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
-        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, with other rows; sign as in `amplitude`."""
+        """Amplitude, mm/N, of the compliance at a harmonic of a row's pitch among all rows; sign as `amplitude`."""
         share = self.shares[self.bars.index(row)]
         return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / share
 
     def compliance(self, count: int) -> Array:
-        """Compliance at ``count`` equally spaced places of the path, mm/N, from the Fourier series of each row."""
+        """Compliance at ``count`` equally spaced places of the path, (count,), mm/N, from each row's Fourier series."""
         orders = min(count // 2 - 1, int(_HIGHEST / self.radius * self.length / (2.0 * np.pi)))
         k = np.asarray(2.0 * np.pi * np.arange(orders + 1) / self.length, float)
         spectrum = np.zeros(count // 2 + 1, complex)
@@ -200,7 +200,7 @@ class Substrate:
         return np.asarray(np.fft.irfft(spectrum, count) * count)
 
     def _mean(self) -> float:
-        """Mean along the path: shares of rows multiply, each to the power of the part that its row fills."""
+        """Mean compliance along the path: rows' shares multiply, each to the power of the part that it fills."""
         filled = [float(np.diff(row.edges, axis=1).sum()) / row.duty / self.length for row in self.bars]
         pairs = zip(self.shares, filled, strict=True)
         return self.bare * float(np.prod([share ** min(part, 1.0) for share, part in pairs]))

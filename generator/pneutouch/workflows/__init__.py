@@ -1,1 +1,1 @@
-"""Workflows of the commands, one folder each. One imports from another only what the other's `__init__` offers."""
+"""Workflows of the commands, a file or a folder each. From another's folder one imports only what `__init__` offers."""

@@ -1,4 +1,4 @@
-"""Build a design: print files of sensor and mould, prediction, datasheet, print sheet, manifest, in one folder."""
+"""Build of a design: print files of sensor and mould, prediction, datasheet, print sheet, manifest, in one folder."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -42,17 +42,17 @@ from pneutouch.wording import enumerated
 StepReport = Callable[[str], None]
 
 STEPS = ("rules", "meshes", "3MF", "STL", "GLB", "STEP", "datasheet", "files")
-"""The steps that a build reports, in order."""
+"""Steps that a build reports, in order."""
 
 _THUMBNAIL_PIXELS = 256
-"""Width and height of the picture in the 3MF."""
+"""Width and height of the picture in the 3MF file."""
 
 
 def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step: None) -> Path:
-    """Write everything a design gives into ``out/<name>/`` and return that folder.
+    """Write all files of a design into ``out/<name>/`` and return that folder.
 
-    Raises RuleBrokenError, with nothing written, where a rule is broken. The same input gives the same bytes.
-    """
+    Raises RuleBrokenError, with nothing written, where a rule is broken, and InputError for an aged prediction or a
+    folder that cannot be written. The same input gives the same bytes."""
     scene, assembly = evaluation.scene, evaluation.assembly
     if evaluation.options.aged:
         raise InputError("an aged prediction is for reading", file=scene.where, remedy="a build is of a fresh print")
@@ -102,7 +102,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
 
 
 def input_hash(evaluation: Evaluation) -> str:
-    """First twelve digits of the SHA-256 of the inputs and the version."""
+    """First twelve digits of the SHA-256 of the build's inputs and the program's version."""
     return hash_of(BuildRecipe.of(evaluation).inputs())
 
 
@@ -134,7 +134,7 @@ def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyM
 
 
 _NAME = "NAME"
-"""Placeholder of the design's name in patterns."""
+"""Placeholder for the design's name in patterns."""
 
 CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (
@@ -157,11 +157,11 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),
     (("manifest.json",), "inputs, versions, measured mesh deviation, SHA-256 of every file"),
 )
-"""Files of an output folder by patterns of names, with a description, as in docs/reference/files.md."""
+"""Files of a build's folder by patterns of names, with a description, as in docs/reference/files.md."""
 
 
 def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:
-    """The files of the output folder of ``design`` by group, with a description; groups without a file left out."""
+    """Files in the output folder of ``design`` by group, with a description; groups without a file are left out."""
     left = list(names)
     groups = []
     for patterns, words in CONTENTS:
@@ -173,7 +173,7 @@ def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:
 
 
 def calibrated_name(source: DesignSource, changes: Changes) -> str | None:
-    """Name of the build of a calibrated sensor, so that it does not replace the design's; None without calibration."""
+    """Name of the build of a calibrated sensor, which must not replace the design's; None without a calibration."""
     calibration = changes.get(CALIBRATION, source.content.get(CALIBRATION, NO_CALIBRATION))
     if calibration == NO_CALIBRATION or not isinstance(calibration, str):
         return None
@@ -181,17 +181,17 @@ def calibrated_name(source: DesignSource, changes: Changes) -> str | None:
 
 
 _MOULD_FOLDER = "mould"
-"""Folder of the mould's files within a design's."""
+"""Folder of the mould's files within the folder of a build."""
 
 _GAP, _BORDER = 5.0, 5.0
 """Space in mm between parts on a plate and at its border: own choice."""
 
 _APART = 1.2
-"""Distance of the parts in the exploded view, over the height of each."""
+"""Distance of the parts in the exploded view, as a multiple of a part's height."""
 
 
 def mould_files(mould: MouldAssembly) -> tuple[dict[str, bytes], dict[str, str]]:
-    """The files by name, and those left out with the reason. Raises ComputationError if the CAD kernel fails."""
+    """Files of a mould by path, and reasons for those left out. Raises ComputationError if the CAD kernel fails."""
     name = f"{mould.scene.name}-mould"
     files = {f"{_MOULD_FOLDER}/{body.name}.stl": stl(body) for body in mould.printed}
     plates = _plates(mould)
@@ -235,7 +235,7 @@ def mould_record(mould: MouldAssembly) -> MouldRecord:
 
 
 def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
-    """The parts of the mould apart along the axis, in the order in which they close, all coordinates positive."""
+    """Parts of the mould, apart along the axis in the order in which they close; no coordinate is negative."""
     size = mould.size
     lifts = {
         "mould-cap": _APART * (size.faces.high - size.low + size.foot),
@@ -251,7 +251,7 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
 
 
 def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:
-    """Every part as often as it is made, on build plates one after another, each as full as `in_rows` packs it."""
+    """Parts, each as often as it is made, on as many build plates as needed, each as full as `in_rows` packs it."""
     envelope = mould.printer.envelope
     area = PackingArea(envelope.x, envelope.y, _BORDER, _GAP)
     left = [

@@ -1,4 +1,4 @@
-"""A voxel stack of a design: the bodies printed with the membrane, one PNG per layer, in a folder of its own."""
+"""Voxel stack of a design: the bodies printed with the membrane, one PNG for each layer, in its own folder."""
 
 import zlib
 from collections.abc import Callable, Mapping
@@ -23,14 +23,14 @@ from pneutouch.spec.printer import Mode
 from pneutouch.stopping import parent_folders, temporary_folder, uninterrupted
 
 Progress = Callable[[int, int], None]
-"""Called with the slices written and all of them."""
+"""Called with the number of slices written and the number of all slices."""
 
 SEED = 1
 
 
 @dataclass(frozen=True)
 class VoxelPlan:
-    """Plan of a stack before it is made: the job, its mode, and the findings on it."""
+    """Plan of a stack before it is made: the job, its print mode, and the findings on it."""
 
     assembly: Assembly
     job: VoxelJob
@@ -38,7 +38,7 @@ class VoxelPlan:
     findings: tuple[Finding, ...]
 
     def refuse(self) -> None:
-        """Raise RuleBrokenError where a rule is broken; it names the design file and the key."""
+        """Raise RuleBrokenError, which names the design file and the key, where a rule is broken."""
         scene = self.assembly.scene
         refuse(self.findings, scene.where, "print.profile", scene.design.print.profile)
 
@@ -46,10 +46,10 @@ class VoxelPlan:
 def plan_voxels(
     assembly: Assembly, *, mode: str | None = None, library: Library | None = None, coarser: float = 1.0
 ) -> VoxelPlan:
-    """Plan the stack of the print job that the membrane is in; ``mode`` names a print mode, else it is the design's.
+    """Plan the stack of the membrane's print job; ``mode`` names a print mode (None: the design's); ``coarser`` as in
+    `raster`.
 
-    Raises InputError for an unknown mode and for a mix of unknown fraction.
-    """
+    Raises InputError for an unknown mode and for a mix of unknown fraction."""
     scene = assembly.scene
     printer, _ = assembly.machine("membrane")
     chosen = _mode(assembly, mode)
@@ -75,18 +75,18 @@ def plan_voxels(
 
 
 def stack_folder(out: Path, name: str) -> Path:
-    """The folder of a design's stack, next to its output folder."""
+    """Folder of a design's stack, next to the design's output folder."""
     return out / f"{name}-voxels"
 
 
 def write_voxels(
     plan: VoxelPlan, out: Path, input_hash: str, progress: Progress = lambda done, all_: None
 ) -> tuple[Path, list[str]]:
-    """Write the stack into ``out/<name>-voxels/``; returns the folder, and a line for each fraction that is not met.
+    """Write the stack into ``out/<name>-voxels/``; return the folder, and a line for each volume fraction that is not
+    met.
 
-    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken,
-    and InputError where the folder cannot be written.
-    """
+    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken, and
+    InputError where the folder cannot be written."""
     plan.refuse()
     scene = plan.assembly.scene
     printer, _ = plan.assembly.machine("membrane")
@@ -109,8 +109,8 @@ def write_stack(
 ) -> VoxelSlicer:
     """Slice a job into a hidden folder and rename that to ``folder``. One slice at a time is in memory.
 
-    Raises InputError that names the folder where it cannot be written, the disk is full, or foreign files lie
-    in it; nothing is left behind then, and an earlier stack stays.
+    Raises InputError that names the folder where it cannot be written, the disk is full, or other files lie in it; then
+    nothing is left behind, and an earlier stack stays.
     """
     check_stack_folder(folder)
     try:
