@@ -56,7 +56,7 @@ from pneutouch.workflows.compare_measured import (
 )
 
 Depths = Mapping[float, Sequence[Sequence[Array]]]
-"""Depths of a measurement by driving pressure in kPa: of each run of each specimen, mm."""
+"""Depths (n,) mm of a measurement by driving pressure in kPa, for each specimen and each of its runs."""
 
 _CLOSE = 1e-6
 _REMEDY = "build the design again"
@@ -64,7 +64,7 @@ _REMEDY = "build the design again"
 
 @dataclass(frozen=True)
 class PredictedColumn:
-    """A prediction as ``predict`` prints it, the scene it is of, and where it comes from."""
+    """A prediction as ``predict`` prints it, the design it is of, and its origin: a design or a build."""
 
     document: Mapping[str, Any]
     scene: ResolvedDesign
@@ -76,7 +76,8 @@ class PredictedColumn:
     notes: tuple[str, ...] = ()
 
     def sensor(self, depths: Depths) -> ComparedSensor:
-        """The column as a sensor; if there is a measurement, figures of the curve are read at its ``depths``.
+        """The column as a sensor; figures of the curve are read at ``depths``, those of a measurement, if there are
+        any.
 
         Raises InputError if a build's prediction is not as it was written."""
         with as_written(Path(self.source), "prediction.json", _REMEDY) if self.evaluation is None else nullcontext():
@@ -112,7 +113,7 @@ class PredictedColumn:
         return self.scene.name if calibration is None else f"{self.scene.name}@{calibration}"
 
     def _parameters(self) -> dict[str, float]:
-        """Parameters that the figures follow from: those of a calibration, where there is one."""
+        """Parameters that the figures follow from: modulus, and with a calibration its modulus and wall."""
         calibration, modulus = self.scene.calibration, self.scene.membrane_material.shear_modulus_MPa
         if calibration is not None:
             return {key: calibration.value(key) for key in ("shear_modulus_MPa", "wall_thickness_mm")}
@@ -123,17 +124,16 @@ class PredictedColumn:
 
 
 def of_design(evaluation: Evaluation, source: str) -> PredictedColumn:
-    """The column of a design that was just evaluated."""
+    """Column of a design that was just evaluated."""
     model, clamp = evaluation.prediction.model, evaluation.options.clamp
     document = plain(predicted(evaluation))
     return PredictedColumn(document, evaluation.scene, model, clamp, "design", source, evaluation)
 
 
 def of_build(folder: Path) -> PredictedColumn:
-    """The column of a build's output folder: its recorded prediction, and the scene of its recipe.
+    """Column of a build's output folder: its recorded prediction, and the design in its recipe.
 
-    Raises InputError if the folder is damaged.
-    """
+    Raises InputError if the folder is damaged."""
     manifest = manifest_of(folder)
     with as_written(folder, "prediction.json", _REMEDY):
         document = json.loads(listed_file(folder, "prediction.json", manifest))
@@ -194,11 +194,11 @@ _OF_CURVE = (
     "saturation_force_N",
     "range_end_mm",
 )
-"""Figures that depend on the range that they are read over."""
+"""Figures that depend on the range of the curve that they are read over."""
 
 
 def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
-    """Figures at the depths of a measurement, and a note on them."""
+    """Figures at the depths of a measurement, by key, and a note on them; both empty if none can be read."""
     curve = state["curve"]
     drawn = curve["indentation_mm"], curve["contact_force_N"], curve["pressure_rise_kPa"]
     indentation, force, rise_kPa = map(np.array, drawn)
@@ -216,7 +216,7 @@ def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[
 
 
 def _scaled(value: float, known: Mapping[str, Any] | None, state: Mapping[str, Any]) -> ComparedFigure:
-    """A figure of a shorter range with the relative uncertainty of the whole range."""
+    """A figure of a shorter range with the relative uncertainty of the whole range; None as ends if unknown."""
     if known is None or not known["value"]:
         return ComparedFigure(value)
     scale = value / known["value"]
@@ -225,7 +225,7 @@ def _scaled(value: float, known: Mapping[str, Any] | None, state: Mapping[str, A
 
 
 Compared = str | DesignSource
-"""Things that may be compared: a design (name, file or source), a build's folder, a folder of results."""
+"""Thing that may be compared: a design (name, file or source), a build's folder, or a folder of results."""
 
 _Column: TypeAlias = PredictedColumn | MeasuredColumn
 
@@ -235,7 +235,7 @@ _LONGEST = 100
 
 @dataclass(frozen=True)
 class CompareResult:
-    """The columns, and everything that the comparison states; ``evaluations`` has None for all but designs."""
+    """The columns and the whole comparison; ``evaluations`` has None for columns that were not just evaluated."""
 
     sensors: tuple[ComparedSensor, ...]
     evaluations: tuple[Evaluation | None, ...]
@@ -251,7 +251,7 @@ class CompareResult:
 
 
 def _distinct(labels: Sequence[str]) -> list[str]:
-    """Labels as parts of a file's name, without the first one's name where another repeats it."""
+    """Labels as parts of a file's name; the first label's design name is left out where others repeat it."""
     words = [re.sub(r"[^A-Za-z0-9_.@-]+", "-", label).strip("-.") for label in labels]
     first = words[0].partition("@")[0]
     parts = [words[0].replace("@", "-")]
@@ -269,10 +269,10 @@ def compare(
     progress: Callable[[int, int, str], None] = lambda done, total, what: None,
     **options: Any,
 ) -> CompareResult:
-    """Set two or more columns side by side; a single folder of results gives its measurement and its prediction.
+    """Compare two or more columns; a single folder of results gives its measurements and its predictions.
 
-    ``changes`` are laid over every design, and over that of every build, which is then predicted again; ``options`` are
-    those of `evaluation.evaluate`. Raises InputError if something cannot be compared.
+    ``changes`` override fields of every design, and of every build's design, which is then predicted again; ``options``
+    are those of `evaluation.evaluate`. Raises InputError if something cannot be compared.
     """
     library = library or Library.default()
     _check_given(given)
@@ -301,7 +301,7 @@ def _check_given(given: Sequence[Compared]) -> None:
 def _columns(
     one: Compared, changes: Changes, library: Library, options: dict[str, Any], *, alone: bool
 ) -> list[_Column]:
-    """The columns that one argument stands for."""
+    """Columns of one argument; a folder of results that stands ``alone`` gives its predictions too."""
     if isinstance(one, str) and one not in library.paths("designs") and Path(one).is_dir():
         return _of_folder(Path(one), changes, library, options, alone=alone)
     source = one if isinstance(one, str) else ""

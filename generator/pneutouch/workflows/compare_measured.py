@@ -1,4 +1,4 @@
-"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one for each resin and age."""
+"""Measured columns of a comparison: groups of a folder from ``characterize``, a column for each resin and age."""
 
 import csv
 import io
@@ -26,7 +26,7 @@ _MOST_BYTES = 100_000_000
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
-    """The manifest of an output folder. Raises InputError if there is none, or if it is damaged."""
+    """Manifest of an output folder. Raises InputError if there is none, or if it is damaged."""
     if not os.path.lexists(folder / MANIFEST):
         raise InputError(
             f"holds no {MANIFEST}: neither a build nor a characterization",
@@ -46,13 +46,13 @@ def manifest_of(folder: Path) -> dict[str, Any]:
 
 
 _MISFORMED = (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, RecursionError, csv.Error)
-"""Exceptions that content of another form raises in use: whoever changed a file can change its hash in the manifest."""
+"""Exceptions that content of another form raises in use: who changes a file can change its hash in the manifest."""
 
 
 @contextmanager
 def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
-    """Context to use a file that the program wrote: raises InputError in place of the exceptions that content of
-    another form raises."""
+    """Context to use a file that the program wrote: InputError replaces the exceptions that content of another form
+    raises."""
     try:
         yield
     except _MISFORMED as error:
@@ -61,7 +61,7 @@ def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
 
 
 def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-    """Value, low and high of a figure, the last two None if it has no interval. Raises ValueError for all else."""
+    """Value, low and high of a figure; the last two may be None. Raises ValueError if one is no finite number."""
     value, low, high = entry["value"], entry["low"], entry["high"]
     numbers([value, *(each for each in (low, high) if each is not None)])
     if low is not None and high is not None and low > high:
@@ -70,7 +70,7 @@ def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | 
 
 
 def numbers(values: Any) -> list[float]:
-    """The values of a list. Raises ValueError if one is no finite number, TypeError for anything but a list."""
+    """The values as a list. Raises ValueError if one is no finite number, TypeError if they are not iterable."""
     for value in values:
         if not is_finite(value):
             raise ValueError(f"{value!r:.40} is no finite number")
@@ -78,7 +78,7 @@ def numbers(values: Any) -> list[float]:
 
 
 def listed_file(folder: Path, name: str, manifest: dict[str, Any]) -> bytes:
-    """A file of an output folder. Raises InputError if it is missing or not as it was written."""
+    """Content of a file of an output folder. Raises InputError if it is missing or not as it was written."""
     entry = manifest["files"].get(name)
     if entry is None or not os.path.lexists(folder / name):
         raise InputError(f"holds no {name}", file=folder, remedy="make the folder again")
@@ -89,15 +89,15 @@ def listed_file(folder: Path, name: str, manifest: dict[str, Any]) -> bytes:
 
 
 PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
-"""Measured figures that a prediction names otherwise."""
+"""Keys of measured figures, and the keys that predictions have for them."""
 
 
 @dataclass(frozen=True)
 class MeasuredColumn:
-    """Groups of one resin and age, by driving pressure, and the loading points of their runs in steps.
+    """Groups of one resin and age, by driving pressure, and the loading points of their runs of kind steps.
 
-    ``kind`` is "measured", or "design" for the prediction that the results were compared with.
-    """
+    ``kind`` is "measured", or "design" for the prediction that the results were compared with; ``depths`` as
+    `compare.Depths`."""
 
     name: str
     source: str
@@ -112,7 +112,7 @@ class MeasuredColumn:
 
 
 def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:
-    """The columns of a folder of results; ``predicted`` adds the prediction in it before each measurement.
+    """Columns of a folder of results; ``predicted`` adds its prediction before each measurement.
 
     Raises InputError if the folder is damaged or holds no group.
     """
@@ -132,7 +132,7 @@ def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredC
 def _columns(
     content: Mapping[str, Any], curves: Mapping[str, CurvePoints], name: str, source: str
 ) -> list[tuple[MeasuredColumn, MeasuredColumn]]:
-    """The prediction and the measurement of each resin and age."""
+    """Prediction and measurement of each resin and age, as columns."""
     groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for group in content["groups"]:
         groups.setdefault((group["resin"], group["age"]), []).append(group)
@@ -156,7 +156,7 @@ def _columns(
 def _depths(
     content: Mapping[str, Any], groups: list[dict[str, Any]], curves: Mapping[str, CurvePoints]
 ) -> dict[float, list[list[Array]]]:
-    """Depths of each run of each specimen, mm, by driving pressure in kPa."""
+    """Depths (n,) mm by driving pressure in kPa, for each specimen and each of its runs."""
     sensor_of = {run["file"]: run["sensor"] for run in content["runs"]}
     depths: dict[float, list[list[Array]]] = {}
     for group in groups:
@@ -181,7 +181,7 @@ def _state(group: Mapping[str, Any], curves: Mapping[str, CurvePoints], *, measu
 
 
 def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, CurvePoints]:
-    """Loading points of the runs in steps, by file."""
+    """Loading points of the runs of kind steps, by file."""
     stepped = {run["file"] for run in content["runs"] if run["kind"] == "steps"}
     columns: dict[str, dict[str, list[float]]] = {}
     for row in csv.DictReader(io.StringIO(points.decode(), newline="")):

@@ -1,1 +1,1 @@
-"""A model fitted to measured runs."""
+"""Calibration: the model of a design fitted to measured runs of a sensor."""

@@ -1,4 +1,4 @@
-"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
+"""Work of ``pneutouch calibrate``: read a campaign's folder, fit, and write the calibration and its files."""
 
 import hashlib
 from collections.abc import Sequence
@@ -52,8 +52,8 @@ from pneutouch.workflows.characterize import (
 
 
 def with_further_tests(calibration: Calibration, source: CampaignSource) -> Calibration:
-    """The calibration with the further tests that would reduce its uncertainty most, at no more than its rated
-    pressure: as designed where the fit cannot be a calibration."""
+    """The calibration with the further tests that would reduce its uncertainty most, at no more than the rated
+    pressure: the calibrated sensor's, or the design's where the fit cannot be a calibration."""
     try:
         known = KINDS["calibrations"].validate(savable(calibration, source), "calibration")
     except InputError:
@@ -69,12 +69,11 @@ class CalibrationOutcome:
     """A calibration that was written.
 
     Attributes:
-        record: The calibration as ``calibrate`` prints it.
-        calibration: The calibration itself.
+        record: Record of the calibration, as ``pneutouch calibrate`` prints it.
+        calibration: The fit and all that was derived from it.
         source: Source of its runs.
-        design_given: The design as a command takes it.
-        assignments: Changes of the campaign to the design.
-    """
+        design_given: The design as a command's argument.
+        assignments: Changes to the design that the campaign states."""
 
     record: OutcomeRecord
     calibration: Calibration
@@ -93,10 +92,10 @@ def run_calibration(
     reading: Reading | None = None,
     root: Path | None = None,
 ) -> CalibrationOutcome:
-    """Read, fit and write; the fit into ``out``, the calibration into ``root`` (None: the user's folder).
+    """Read, fit and write: the report of the fit into ``out``, the calibration into ``root`` (None: the user's folder).
 
-    The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
-    the record's ``calibration`` is None and its last note says why. Raises InputError.
+    The places of all files are checked before the fit. If a fit cannot be a calibration, the record's ``calibration``
+    is None and its last note says why; with ``options.save`` that raises InputError, as do data that cannot be fitted.
     """
     library = library or Library.default()
     root = user_folder() if root is None else root
@@ -149,7 +148,7 @@ def run_calibration(
 def _check_left(
     data: Path, loaded: CampaignData, sensor: str, curves: Sequence[MeasuredCurve], refused: Sequence[tuple[str, str]]
 ) -> None:
-    """Raise InputError, with the reasons, where the sensor has runs to fit and none of them can be used."""
+    """Raise InputError, with the reasons, if the sensor has runs to fit but none of them can be used."""
     files = {run.file for run in loaded.campaign.runs if run.sensor == sensor and run.kind in FITTED_KINDS}
     left = {curve.run.file for curve in curves} | {run.file for run, _, _ in loaded.injections}
     reasons = [(file, why) for file, why in (*loaded.failures, *refused) if file in files]
@@ -159,7 +158,8 @@ def _check_left(
 
 
 def _check_free(path: Path, options: CalibrationOptions, source: CampaignSource) -> None:
-    """Raise InputError where the file is another calibration; an unknown parameter is refused by the fit."""
+    """Raise InputError if the file holds a calibration of other inputs. Unknown parameters are left to the fit to
+    refuse."""
     if not options.replace and set(options.fit) <= set(NAMES):
         check_unlike(path, source.digest, options.fit, options.hold_out_kPa)
 
@@ -173,10 +173,9 @@ def _write(
     name: str,
     source: CampaignSource,
 ) -> tuple[list[Path], list[str]]:
-    """Write the fit's report and the calibration together: the written files, and a note if there is no calibration.
+    """Write the fit's report and the calibration together; return the paths, and a note if there is no calibration.
 
-    Raises InputError if ``save`` requires one; the report is written nevertheless.
-    """
+    Raises InputError if ``options.save`` requires a calibration; the report is written nevertheless."""
     unsaved: list[str] = []
     try:
         savable(calibration, source)
@@ -198,7 +197,8 @@ def _write(
 
 
 def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, replace: bool = False) -> Path:
-    """Save a calibration under a name (None: of design and sensor). Raises InputError as `prepare` and `save` do."""
+    """Save under ``name`` (None: as saved before, else design and sensor). Raises InputError as `prepare` and
+    `save`."""
     calibration = outcome.calibration
     name = name or outcome.record.calibration or default_name(calibration.scene.name, calibration.sensor)
     saved = prepare(calibration, name, user_folder(), outcome.source, replace=replace)

@@ -1,4 +1,4 @@
-"""A calibration as files: its folder, and the calibration file that a design names."""
+"""Files of a calibration: its output folder, and the calibration file that a design names."""
 
 import os
 import re
@@ -30,10 +30,9 @@ from pneutouch.workflows.calibrate.fit import Calibration
 
 
 def check_place(name: str, root: Path) -> Path:
-    """The file ``root/calibrations/name.toml`` of a calibration.
+    """Path of a calibration's file, ``root/calibrations/name.toml``.
 
-    Raises InputError for a bad name, for a place that something other than a file has, and for a folder that cannot be
-    written.
+    Raises InputError for a bad name, for a path that is no file, and for a folder that cannot be written.
     """
     # DESIGN@NAME is a path where it ends with .toml.
     if plain_name(name, key="save") == NO_CALIBRATION or name.endswith(".toml"):
@@ -53,7 +52,7 @@ def check_place(name: str, root: Path) -> Path:
 def check_unlike(path: Path, digest: str, names: Sequence[str], hold_out_kPa: Sequence[float]) -> None:
     """Raise InputError if the file exists and cannot be the calibration that is to be made.
 
-    It can be if its campaign has the ``digest``, ``names`` were fitted and ``hold_out_kPa`` were held out.
+    It can be that calibration if its campaign has the ``digest``, ``names`` were fitted and ``hold_out_kPa`` held out.
     """
     if not path.is_file():
         return
@@ -70,7 +69,7 @@ def check_unlike(path: Path, digest: str, names: Sequence[str], hold_out_kPa: Se
 
 
 def taken(path: Path) -> InputError:
-    """The error of a name that another calibration has."""
+    """Error for a name that another calibration has."""
     remedy = "give another `save`, or `replace` to replace it"
     return InputError("there is a calibration of this name, of other content", file=path, remedy=remedy)
 
@@ -80,14 +79,14 @@ _CHART = (160.0, 110.0)
 
 _TWO_SIDED = 1.96
 _DIGITS = 8
-"""Significant digits of a calibration file: a covariance of correlated parameters needs more than its values."""
+"""Significant digits in a calibration file: the covariance of correlated parameters needs more than the values do."""
 
 _NAME_LIMIT = 100
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignSource:
-    """Source of the runs of a calibration: SHA-256 of the files, the laboratory, and the mean age of the print."""
+    """Source of a calibration's runs: SHA-256 of the files, laboratory, if simulated, and mean age of the print."""
 
     digest: str
     lab: str = ""
@@ -105,12 +104,12 @@ class SavedCalibration:
 
 
 def folder_of(design: str, sensor: str, out: Path) -> Path:
-    """The output folder of a calibration: ``out/<design>-<sensor>-calibration``."""
+    """Output folder of a calibration: ``out/<design>-<sensor>-calibration``."""
     return out / f"{_plain(design, sensor)}-calibration"
 
 
 def write_calibration(calibration: Calibration, out: Path, source: CampaignSource, unsaved: Sequence[str] = ()) -> Path:
-    """Write calibration.json and residuals.svg into `folder_of`; ``unsaved`` are further notes. Raises InputError."""
+    """Write calibration.json, residuals.svg and a manifest into `folder_of`, with the notes ``unsaved`` added."""
     folder = folder_of(calibration.scene.name, calibration.sensor, out)
     check_writable(folder)
     record = replace(calibration.record, notes=(*calibration.record.notes, *unsaved))
@@ -132,7 +131,7 @@ def write_calibration(calibration: Calibration, out: Path, source: CampaignSourc
 
 
 def default_name(design: str, sensor: str) -> str:
-    """Name of the calibration file where none is given: design and sensor."""
+    """Name of a calibration file if none is given: design and sensor."""
     return _plain(design, sensor).lstrip("-_")[:_NAME_LIMIT] or "sensor"
 
 
@@ -145,8 +144,8 @@ def prepare(
 ) -> SavedCalibration:
     """Check and compose ``root/calibrations/name.toml``; nothing is written.
 
-    Raises InputError as `check_place` and `savable` do, and for a file of that name with another content, unless
-    ``replace``.
+    Raises InputError as `check_place` and `savable` do, and without ``replace`` for a file of that name with other
+    content.
     """
     path = check_place(name, root)
     head = f"# Calibration of one sensor; pneutouch predict {calibration.scene.name}@{name} uses it.\n"
@@ -157,11 +156,11 @@ def prepare(
 
 
 def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
-    """`calibration_content`, checked. Raises InputError if it cannot be a calibration.
+    """Content of the calibration file, checked. Raises InputError if the fit cannot be a calibration.
 
-    It cannot be one if a modulus, a wall or a friction that was fitted has no interval, the data do not determine the
-    friction, the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is
-    ``fit`` where another choice of parameters may help.
+    It cannot be one if a fitted modulus, wall or friction has no interval, the data do not determine the friction, the
+    runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The error's key is ``fit``
+    where another choice of parameters may help.
     """
     _check_friction(calibration)
     content = calibration_content(calibration, source)
@@ -182,7 +181,7 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
 
 
 def _check_friction(calibration: Calibration) -> None:
-    """Raise InputError where friction was fitted and more than `UNSEEN` of its prior standard deviation remains."""
+    """Raise InputError if friction was fitted and the data do not determine it (`UNSEEN`)."""
     fit, identified = calibration.fit, calibration.identified
     if FRICTION not in fit.parameters.fitted:
         return
@@ -197,7 +196,7 @@ def _check_friction(calibration: Calibration) -> None:
 
 
 def save(saved: SavedCalibration) -> None:
-    """Write the files that `prepare` made. Raises InputError if the folder cannot be written."""
+    """Write the file that `prepare` composed. Raises InputError if the folder cannot be written."""
     try:
         replace_files({saved.path: saved.text.encode()})
     except InputError as error:
@@ -206,7 +205,7 @@ def save(saved: SavedCalibration) -> None:
 
 
 def calibration_content(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
-    """The content of the calibration file."""
+    """Content of the calibration file, numbers rounded to `_DIGITS`."""
     fitted, design = calibration.fit, calibration.scene.design
     observations, gap = fitted.observations, calibration.gap
     covered, covariance = _covariance(calibration)
@@ -253,7 +252,8 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
 
 
 def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
-    """Parameters with a covariance, and the covariance; of modulus and wall that of the logarithm, in mL and mm.
+    """Indices of the parameters with a covariance, and the covariance, (k, k): of logarithms for modulus and wall, else
+    mL and mm.
 
     A standard deviation is half of the 95 % interval over 1.96, so that k = 2 gives the interval back. What was not
     fitted but has a prior moves the estimates, and so is correlated with them. A dead volume or an offset on its bound

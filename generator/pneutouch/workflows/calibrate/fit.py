@@ -1,4 +1,4 @@
-"""A campaign and a design to the sensor in hand: modulus, wall, dead volume and contact offset, each uncertain."""
+"""Calibration of one sensor from a campaign and its design: fitted parameters with intervals, residuals and notes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -97,7 +97,7 @@ def _goodness(fitted: CalibrationFit) -> GoodnessRecord:
 
 
 def _response(gap: ResponseGap | None) -> tuple[FittedResponse, ...]:
-    """The part of the curves that the fitted model leaves out, by driving pressure."""
+    """Part of the curves that the fitted model leaves out, by driving pressure; empty without curves."""
     if gap is None:
         return ()
     correction = gap.correction
@@ -122,7 +122,7 @@ def _further(fitted: CalibrationFit, test: SuggestedTest) -> FurtherRecord:
 
 
 def _leaving(k: int, deviation: float) -> float | None:
-    """A deviation in the unit of records: relative (of the logarithm), mL, or mm."""
+    """Deviation in the unit of records: relative for logarithms, mL, mm, or 1; None if it is not finite."""
     return _number(float(deviation) / (ML if k == DEAD else 1.0))
 
 
@@ -131,7 +131,7 @@ def _number(value: float) -> float | None:
 
 
 FITTED_KINDS: tuple[RunKind, ...] = ("steps", "injection")
-"""Kinds of runs that are fitted."""
+"""Kinds of runs that a calibration fits."""
 
 
 @dataclass(frozen=True)
@@ -139,12 +139,11 @@ class Calibration:
     """Calibration of a sensor.
 
     Attributes:
-        scene: Design that the sensor was made to.
+        scene: Design that the sensor was made from.
         sensor, title: Name of the specimen and of the campaign.
-        fit, residuals, misses, identified, held_out: See `bench.calibrate`.
-        notes: Remarks on what was read.
-        further: Tests that would reduce the uncertainty; `with_further_tests` finds them.
-    """
+        fit, residuals, misses, identified, held_out: Results of the functions of `bench.calibrate`.
+        notes: Remarks on the data.
+        further: Tests that would reduce the uncertainty; `with_further_tests` finds them."""
 
     scene: ResolvedDesign
     sensor: str
@@ -159,17 +158,17 @@ class Calibration:
 
     @cached_property
     def gap(self) -> ResponseGap | None:
-        """Part of the curves that the fitted model leaves out; None without curves."""
+        """Part of the curves that the fitted model leaves out; None if too few points are covered."""
         return response_gap(self.fit)
 
     @cached_property
     def misfit(self) -> ModelMisfit:
-        """Distance of the runs from the fitted model as a whole."""
+        """Misfit of all runs together."""
         return misfit(self.fit, self.residuals)
 
     @property
     def warnings(self) -> list[str]:
-        """Reasons to doubt the calibration: a model that does not describe the runs."""
+        """Reasons to doubt the calibration: one if the model describes the runs poorly, else none."""
         if not self.misfit.doubtful:
             return []
         return [
@@ -179,7 +178,7 @@ class Calibration:
 
     @property
     def notes_for_reader(self) -> list[str]:
-        """Notes for the reader in addition to the numbers."""
+        """Remarks on the data, then notes on the fit."""
         return [*self.notes, *fit_notes(self.fit, self.identified, self.further, self.misses, self.held_out)]
 
     @cached_property
@@ -240,7 +239,7 @@ def calibrate(
 
 
 def chosen_sensor(campaign: Campaign, sensor: str | None) -> str:
-    """The sensor named, or the only one. Raises InputError if none of several is named, or the name is unknown."""
+    """The sensor named, or the only one. Raises InputError for an unknown name, or None among several."""
     known = sorted({run.sensor for run in campaign.runs})
     if sensor is None and len(known) > 1:
         raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")
@@ -258,7 +257,8 @@ def observations_of(
     scene: ResolvedDesign,
     sensor: str | None = None,
 ) -> tuple[str, Observations, list[str]]:
-    """The sensor's name, steps and injections, and remarks. Raises InputError as `chosen_sensor`, and without a run."""
+    """Sensor's name, its steps and injections, and remarks. Raises InputError as `chosen_sensor`, without runs to fit,
+    and for an injection that does not begin at ambient pressure."""
     chosen = chosen_sensor(campaign, sensor)
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
     pushed = [fitted for fitted in injections if fitted[0].sensor == chosen]

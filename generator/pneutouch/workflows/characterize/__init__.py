@@ -1,4 +1,4 @@
-"""Evaluation of measured data into figures, and their comparison with predicted ones."""
+"""Characterization: measured data reduced to figures and compared with predictions."""
 
 from pneutouch.workflows.characterize.campaign import CharacterizationResult, characterize, sound
 from pneutouch.workflows.characterize.load import (

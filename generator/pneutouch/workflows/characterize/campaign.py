@@ -1,7 +1,6 @@
-"""A campaign characterized: read, reduced to figures, compared with the prediction, written.
+"""Characterization of a campaign: its data read, reduced to figures, compared with the prediction, and written.
 
-The small tables of a characterization: points, segments, and the results of leak and injection runs.
-"""
+Also its small tables: points, segments, and the results of leak and injection runs."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -59,7 +58,7 @@ _RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
 
 
 def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
-    """Every loading point of every run: indentation, force, pressure rise."""
+    """CSV of every loading point of every run: indentation, force, pressure rise; a hand's indentation is empty."""
     rows = [
         [*_of(curve), _cell(d), f"{f:.6g}", f"{p / KPA:.6g}"]
         for curve in curves
@@ -69,12 +68,12 @@ def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
 
 
 def _cell(value: float, digits: int = 6) -> str:
-    """A number as text; empty if it is not known, such as the travel of a press by hand."""
+    """A number as text; empty if it is not finite, such as the travel of a press by hand."""
     return f"{value:.{digits}g}" if math.isfinite(value) else ""
 
 
 def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
-    """Every indentation found, with the seconds that were read; a doubtful one stands with its reason."""
+    """CSV of every indentation, with its times, and of every warning, with its time interval and reason."""
     rows = []
     for curve in curves:
         for i in curve.indents:
@@ -116,11 +115,11 @@ def _of(curve: MeasuredCurve) -> list[Any]:
 def injections(
     loaded: CampaignData, scene: ResolvedDesign
 ) -> tuple[tuple[InjectionFigure, ...], list[tuple[str, str]]]:
-    """Leak rates, and the dead volume an injection would mean in a rigid line; files that give neither, and why.
+    """Leak rates, and the gas volume of each injection as if the line were rigid; and files that give neither, with the
+    reason.
 
-    An injection into a sensor swells the dome, so that its dead volume is an upper bound; `calibrate`
-    takes the dome into account.
-    """
+    An injection into a sensor swells the dome, so that this volume is too large; a calibration takes the dome into
+    account."""
     failures = []
     rows = [
         InjectionFigure(run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
@@ -139,18 +138,18 @@ def injections(
 
 
 def _when(run: CampaignRun) -> str:
-    """Difference between runs of one sensor and kind, in words."""
+    """Text that tells runs of one sensor and kind apart: driving pressure, number and age."""
     return f"{run.driving_pressure_kPa:g} kPa, run {run.run}" + (f", {run.age_days:g} d" if run.age_days else "")
 
 
 EVIDENCE = ("doubtful", "all", "none")
-"""Runs of which the evidence is plotted: those with warnings and one of each group, all, or none."""
+"""Runs whose evidence is plotted: those with warnings or questions and one of each group and kind, all, or none."""
 
 
 @dataclass(frozen=True)
 class CharacterizationResult:
-    """Result of a characterization: the sheet's content, the folder written, the traces of the runs by file, the
-    layouts of the files (`load.read_as`), the design as a command takes it, and the files with their columns."""
+    """Result of a characterization: the sheet's content, traces of the runs by file, name of the output folder, layouts
+    of the files (`load.read_as`), design as a command takes it, and files with their columns."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
@@ -161,7 +160,7 @@ class CharacterizationResult:
 
     @property
     def fitted(self) -> bool:
-        """True if a sensor of the campaign can be fitted: the model of the fit covers its design."""
+        """True if a sensor of the campaign can be fitted: the fit's model covers its design."""
         scene = self.measured.scene
         try:
             check_fitted(scene, sensor_of(assemble(scene)))
@@ -171,7 +170,7 @@ class CharacterizationResult:
 
     @cached_property
     def figures(self) -> MeasuredCampaign:
-        """The figures, and how files were read whose columns were found by their headers."""
+        """The figures, and how those files were read whose columns were found by their headers."""
         return figures_of(self.measured, self.read_as)
 
     @property
@@ -181,7 +180,7 @@ class CharacterizationResult:
 
     @property
     def missed(self) -> bool:
-        """True if a requirement of the target was not shown to be met."""
+        """True if a requirement of the target was not shown to be met; False without a target."""
         return any(verdict.passed is not True for verdict in self.measured.verdicts)
 
 
@@ -199,10 +198,10 @@ def characterize(
 ) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
-    ``design`` takes precedence over the one that the campaign names; ``changes`` are laid over either, and ``reading``
-    (tables ``columns`` and ``format``) over what the campaign gives of its files. A single file has the ``kind`` given,
-    else the kind that its record shows. ``model`` USUAL is the solid, or harmonic off the axis. Raises InputError if
-    nothing can be read; files that fail are listed in the outcome.
+    ``design`` takes precedence over the one that the campaign names; ``changes`` override fields of either, and
+    ``reading`` (tables ``columns`` and ``format``) those of the campaign's tables. A single file has the ``kind``
+    given, else the kind that its record shows. ``model`` USUAL is the solid, or harmonic off the axis. Raises
+    InputError if nothing can be read; files that fail are listed in the result.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data, library)
@@ -248,7 +247,8 @@ def characterize(
 
 
 def _design_of(data: Path, library: Library) -> tuple[str, dict[str, Any]]:
-    """The design that a campaign names, and the campaign's changes to it."""
+    """Name of the design that a campaign names, and the campaign's changes to it. Raises InputError if it names
+    none."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))
@@ -282,7 +282,7 @@ def _answer(
 def sound(
     loaded: CampaignData, answer_of: Mapping[tuple[str, float], StatePrediction]
 ) -> tuple[list[MeasuredCurve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
-    """Plausible curves, implausible ones with the reason, and questions on the others."""
+    """Plausible curves; files of the others, with the reason; and questions about the plausible ones, by file."""
     kept: list[MeasuredCurve] = []
     failures: list[tuple[str, str]] = []
     questions: list[tuple[str, str]] = []
@@ -306,7 +306,7 @@ def _hash(loaded: CampaignData, design: Any) -> str:
 
 
 def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful") -> Path:
-    """Write the measured datasheet, the figures, the points and the evidence; returns the folder."""
+    """Write the measured datasheet, figures, points, segments and evidence (one of `EVIDENCE`); return the folder."""
     from pneutouch.report.fit_charts import evidence_svg
     from pneutouch.report.measured.sheet import measured_datasheet
 

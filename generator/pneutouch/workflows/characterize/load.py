@@ -1,7 +1,6 @@
 """Reading of a campaign's folder, or of one file, into curves; a file that fails does not stop the others.
 
-Options of a command or a function for the reading of files, in place of [columns] and [format] of a campaign.
-"""
+Also options of a command or function that override [columns] and [format] of a campaign file."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -33,18 +32,19 @@ from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 from pneutouch.wording import listed
 
 Reading = Mapping[str, Mapping[str, Any]]
-"""Tables ``columns`` and ``format`` as in a campaign file."""
+"""Tables ``columns`` and ``format`` as in a campaign file; their keys override the campaign's."""
 
 _CHANNELS = "|".join(UNITS)
 _NEXT = re.compile(rf",(?=\s*(?:{_CHANNELS})\s*=)")
 _NAMED = 12
-"""Number of files that are named of a group that does not hold all files."""
+"""Greatest number of files that are named, in a group that does not hold all files."""
 
 _FORM = "write channel=NAME or channel=NAME:UNIT, such as force=Load or force=Load:N; -NAME turns the sign"
 
 
 def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """The table [columns] from texts ``channel=NAME:UNIT``, several with commas between. Raises InputError.
+    """Table [columns] from texts ``channel=NAME:UNIT``, each one or several with commas. Raises InputError for other
+    texts.
 
     The unit may be left out where the header gives it; a minus before the name turns the sign."""
     columns: dict[str, dict[str, Any]] = {}
@@ -62,7 +62,7 @@ def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
-    """The campaign with ``reading`` in place of its columns and format, those of its runs too. Raises InputError."""
+    """The campaign with the keys of ``reading`` over its columns and format, and over those of its runs."""
     if not reading:
         return campaign
     runs = []
@@ -88,8 +88,8 @@ def _with_stated(
 
 
 def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, ...]:
-    """Guessed layouts of the files of a campaign of ``runs`` runs: files read alike together, with the tables of a
-    campaign file that state the layout."""
+    """Layouts that were guessed for the files of a campaign of ``runs`` runs: files read alike together, with the
+    tables of a campaign file that would state the layout."""
     alike: dict[str, list[str]] = {}
     for file, source in sources.items():
         if source.guessed:
@@ -102,13 +102,13 @@ def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, 
 
 
 def undisputed(sources: Mapping[str, MeasuredFile], failures: Sequence[tuple[str, str]]) -> dict[str, MeasuredFile]:
-    """The files whose columns are not put in question by any of the failures, (file, message)."""
+    """Files whose columns none of the failures, (file, message), puts in question."""
     disputed = {file for file, message in failures if "columns." in message}
     return {file: source for file, source in sources.items() if file not in disputed}
 
 
 def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
-    """Failures, (file, message), grouped by message: the names of their files, and the message without them."""
+    """Failures, (file, message), grouped by message: names of the files, and the message without them."""
     alike: dict[str, list[str]] = {}
     for file, message in failures:
         _, named, problem = message.partition(f"{file}: ")
@@ -117,7 +117,7 @@ def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
 
 
 def reading_text(read_as: Iterable[ReadFiles]) -> str:
-    """Notes on the columns and formats that were guessed from the files, with lines for campaign.toml to keep them."""
+    """Notes on columns and formats that were guessed, with the lines that would state them in campaign.toml."""
     blocks = []
     for entry in read_as:
         files, whole = entry.files, entry.whole_campaign
@@ -129,19 +129,19 @@ def reading_text(read_as: Iterable[ReadFiles]) -> str:
 
 
 Progress = Callable[[int, int], None]
-"""Receives the megabytes read and the megabytes in all."""
+"""Called with the megabytes read and the megabytes in all."""
 
 _MEGABYTE = 1e6
 _LONGEST = 60
 
 _LOADED, _COPY, _COMPARED = 0.1, 0.5, 20_000
-"""Share of its greatest force from which a run counts as loaded, share of its readings under load, force and pressure
-together, from which it is asked whether it is a copy of another, and number of them that are compared: our choice.
-Noise makes hardly any two readings the same."""
+"""Share of its greatest force above which a run counts as loaded; share of readings under load that two runs share,
+force and pressure alike, above which one may be a copy of the other; most readings that are compared: our choice. Noise
+makes hardly any two readings the same."""
 
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
-"""Largest difference, in kPa and relative, between the pressure read before contact and the design's driving pressure
-for which it is taken: a reset's scatter."""
+"""Largest difference, in kPa and relative, of the pressure before contact from a driving pressure of the design at
+which the run is taken to be at that: a reset's scatter."""
 
 
 @dataclass(frozen=True)
@@ -149,14 +149,14 @@ class CampaignData:
     """Content of a campaign's files.
 
     Attributes:
-        campaign: The campaign; for a single file, one with only that run.
-        folder: Folder of its files.
+        campaign: The campaign, its runs with the kinds as read; for a single file a campaign of that run.
+        folder: Folder of the campaign's files.
         curves: Curves of every run with a plate that could be read, in the campaign's order.
-        traces: The same runs thinned for plotting, by file.
+        traces: Runs with a plate or a leak, thinned for plotting, by file.
         injections: Run, volumes (mm3) and pressures (MPa) of the injection runs.
         leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
         failures: Files that could not be read, with the message.
-        questions: Data that look wrong in runs without a plate: file, and the question.
+        questions: Data that look wrong when read, before a prediction: file, and the question.
         sources: The files that could be identified, with their columns as they were read.
     """
 
@@ -184,13 +184,13 @@ class _Gathered:
     readings: dict[str, NDArray[np.complex128]] = field(default_factory=dict)
 
     def first_of(self, path: Path, file: str) -> str | None:
-        """The file before this one that has the same bytes; None if there is none."""
+        """An earlier file with the same bytes; None if there is none."""
         digest = file_digest(path)
         first = file if digest is None else self.digests.setdefault(digest, file)
         return None if first == file else first
 
     def much_of(self, file: str, blocks: Blocks) -> str | None:
-        """The file before this one that has most of its readings under load too; None if there is none."""
+        """An earlier file that has most of this one's readings under load; None if there is none."""
         under_load = np.abs(blocks.force) > _LOADED * np.abs(blocks.force).max()
         readings = (blocks.force + 1j * blocks.pressure)[under_load][:_COMPARED]
         copied = (name for name, known in self.readings.items() if np.isin(readings, known).mean() > _COPY)
@@ -206,11 +206,11 @@ def load_curves(
     reading: Reading | None = None,
     kind: RunKind | None = None,
 ) -> CampaignData:
-    """Read a campaign's folder, its campaign file, or one file of a run; ``reading`` is laid over the campaign.
+    """Read a campaign's folder, its campaign file, or one file of a run; ``reading`` overrides the campaign.
 
-    A single file has the ``kind`` given, else the kind that it shows; it has the resin of the design ``scene``, and the
-    driving pressure of the design that was read before contact. Raises InputError if the campaign itself is wrong, or
-    none of its files can be read.
+    A single file has the ``kind`` given, else the one it shows, the resin of the design ``scene``, and that driving
+    pressure of the design which was read before contact. Raises InputError if the campaign itself is wrong, or none of
+    its files can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
         campaign, folder = campaign_of(data)
@@ -255,13 +255,13 @@ def load_curves(
 
 
 class _Meter:
-    """Bytes read of all files, reported in megabytes."""
+    """Progress over all files, in bytes read, reported in megabytes."""
 
     def __init__(self, progress: Progress, total: int) -> None:
         self._progress, self._total, self._before = progress, total, 0
 
     def within(self, size: int) -> Callable[[float], None]:
-        """Function that receives the share read of the current file of ``size`` bytes."""
+        """Function that takes the share read of the current file, of ``size`` bytes."""
         before = self._before
         return lambda share: self._report(before + share * size)
 
@@ -313,12 +313,12 @@ _WITHOUT: dict[tuple[str, ...], tuple[RunKind, tuple[str, ...]]] = {
     ("position",): ("hand", HAND),
     ("position", "force"): ("leak", LEAK),
 }
-"""Kind and channels of a file that lacks some channels of a run with a plate."""
+"""For channels that a file lacks of those of a run with a plate: the kind of its run, and the channels that it has."""
 
 
 def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
-    """The file of a run with its columns; no sample is read. A run without a stated kind has the channels that the file
-    has. Raises InputError if a column is not found."""
+    """File of a run with its columns; no sample is read. A run without a stated kind has the channels that the file
+    has. Raises InputError if the file or a column is not found."""
     path = folder / run.file
     if not exists(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
@@ -333,7 +333,7 @@ def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFil
 
 
 def _of_its_channels(run: CampaignRun, source: MeasuredFile) -> CampaignRun:
-    """The run with the kind that follows from the channels of its file, if none is stated."""
+    """The run with the kind that its file's channels imply, as if read from the record; unchanged for a plate."""
     kind = next((kind for kind, channels in _WITHOUT.values() if channels == source.channels), None)
     if kind is None or run.kind == kind:
         return run
@@ -355,8 +355,8 @@ def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> C
 
 
 def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gathered) -> MeasuredCurve:
-    """A single file's curve with the design's driving pressure near which it was read; without one, with the pressure
-    read, and a question.
+    """Curve of a single file at the design's driving pressure near the one that was read; if none is near, at the one
+    read, with a question.
 
     Raises InputError for a pressure before contact that looks like an absolute one.
     """

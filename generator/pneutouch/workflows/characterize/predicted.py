@@ -1,9 +1,7 @@
-"""The prediction for each group of runs, and the plausibility of the files against it.
+"""Predictions for groups of runs: expected readings, comparison, questions, and figures as ``characterize`` prints
+them.
 
-Verdicts on measured figures: against a target, and of one age against another.
-
-Figures that ``characterize`` prints: each measured and predicted, and everything that is doubtful.
-"""
+Also verdicts on measured figures: against a target, and on a change with age."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -46,12 +44,13 @@ from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.units import KPA
 
 _OF_STATE = (SENSITIVITY_KEY, STIFFNESS_KEY)
-"""Figures whose key is the same in the uncertainty; for the force at the greatest depth it is the range end's key."""
+"""Figures with the same key in a state's uncertainty; the force at the greatest depth has that of the range end."""
 
 
 @dataclass(frozen=True)
 class StatePrediction:
-    """The model's state for a resin at a driving pressure (kPa); ``why`` if there is none."""
+    """Predicted state of one resin at one driving pressure: index ``place`` in an evaluation; ``why`` if there is
+    none."""
 
     evaluation: Evaluation | None
     place: int
@@ -59,11 +58,11 @@ class StatePrediction:
 
     @property
     def state(self) -> SensorState | None:
-        """The predicted state."""
+        """The predicted state; None if there is none."""
         return None if self.evaluation is None else self.evaluation.prediction.states[self.place]
 
     def expected(self) -> ExpectedRun | None:
-        """Readings that the files should show at the end of the range; None if nothing is known of them."""
+        """Readings that the runs should show, up to the end of the range; None without a state or figures."""
         state = self.state
         if state is None or state.figures is None:
             return None
@@ -79,11 +78,10 @@ class StatePrediction:
 def answers(
     design: str | DesignSource, changes: Changes, pairs_of: Iterable[tuple[str, float]], model: str, library: Library
 ) -> dict[tuple[str, float], StatePrediction]:
-    """Predict the design in every (resin, driving pressure in kPa) given, resin by resin.
+    """Predict the design for every (resin, driving pressure in kPa) given.
 
-    If a resin's pressures cannot be predicted together, each is tried alone; a pressure beyond the limit has a reason
-    in place of a state.
-    """
+    If a resin's pressures cannot be predicted together, each is tried alone; one that fails has a reason instead of a
+    state."""
     predictions: dict[tuple[str, float], StatePrediction] = {}
     pairs = sorted(set(pairs_of))
     for resin in dict.fromkeys(resin for resin, _ in pairs):
@@ -114,7 +112,8 @@ def _evaluated(
 
 
 def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
-    """A group compared with its prediction, which is of a fresh print."""
+    """A group compared with its prediction; without predicted figures, but a reason, for an aged print or a failed
+    prediction."""
     state = answer.state
     if state is None or answer.evaluation is None:
         return GroupComparison(group, group.key.resin, None, UncertaintyRecord(), {}, answer.why)
@@ -129,15 +128,16 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
 
 
 def _published(evaluation: Evaluation, group: RunGroup) -> dict[str, float]:
-    """The sensitivity in Table S1, kPa/N, where the sensor is the paper's and was measured at this driving pressure."""
+    """Sensitivity in Table S1, kPa/N, if the sensor is the paper's and was measured at this driving pressure; else
+    empty."""
     known = published_sensitivities(evaluation.sensor, evaluation.scene.membrane_material)
     at = [value for pressure, value in known.items() if math.isclose(pressure, group.key.driving_pressure_kPa)]
     return {SENSITIVITY_KEY: at[0]} if at else {}
 
 
 def depths_of(group: RunGroup, state: SensorState) -> list[list[Array]]:
-    """The depths of each run of each specimen of a group that gives its straight line, mm; of a press by hand those at
-    which the prediction has its forces."""
+    """Depths (n,) mm of each run of each specimen that gives a group's straight line; for a press by hand those at
+    which the prediction has the same forces."""
     by_specimen: dict[str, list[Array]] = {}
     for curve in group.lined:
         if curve.indentation.size > 1:
@@ -166,8 +166,8 @@ def _figures(
 
 
 def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str], ...]:
-    """Questions about groups whose figures lie outside the predicted interval: the group's first file, and what would
-    explain it."""
+    """Questions about groups whose figures lie outside the predicted interval: a file of the group, and possible
+    reasons."""
     questions = []
     for comparison in comparisons:
         group = comparison.group
@@ -189,7 +189,7 @@ _EXPLAINED = {
     SENSITIVITY_KEY: "units of force or pressure, another resin, or gas behind the cavity (pneumatics.dead_volume_mL)",
     STIFFNESS_KEY: "units of force or travel, another resin or wall, or a record that begins with the sensor pressed",
 }
-"""Figures that are questioned outside the predicted interval, and what would explain them."""
+"""Figures that are questioned outside the predicted interval, with possible reasons."""
 
 _INFINITE = float("inf")
 
@@ -200,10 +200,9 @@ _YEAR = 300.0, 430.0
 
 
 def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
-    """Every requirement of a target against every group it applies to; a size is not measured here.
+    """Verdicts on each requirement of a target for each group that measured its figure; sizes are not measured.
 
-    A requirement that no group measures is not decided.
-    """
+    A requirement that no group measured gets one undecided verdict."""
     figures = target.target
     outcomes = []
     for what, key, low, high, text in _requirements(figures):
@@ -225,7 +224,7 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
 
 
 def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, str]]:
-    """The requirements: name, figure, least, most, in words."""
+    """Requirements of a target on figures: name, key of the figure, least, most, and text."""
     rows = []
     if (s := figures.sensitivity_kPa_per_N) is not None:
         part = figures.tolerance_percent / 100
@@ -248,8 +247,8 @@ def _interval(estimate: Estimate) -> str:
 
 
 def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
-    """True if the whole interval lies inside, False if it lies outside; None if it lies on both sides, or there is
-    none."""
+    """True if the whole interval lies within the limits, False if it lies outside; None if it lies on both sides, or
+    there is no interval."""
     if estimate.low is None or estimate.high is None:
         return None
     if low <= estimate.low and estimate.high <= high:
@@ -258,9 +257,9 @@ def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
 
 
 def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, ...]:
-    """Change of the sensitivity since fresh, in percent of the aged one as in the paper's Supplement E.
+    """Change of the sensitivity since fresh, in percent of the aged value, as in the paper's Supplement E.
 
-    With the ends of its 95 % interval, and the paper's change in a year where it measured one.
+    With the ends of its 95 % interval, and for an age of about a year the paper's change where it has one.
     """
     known = [group for group in groups if SENSITIVITY_KEY in group.figures]
     by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
@@ -286,7 +285,8 @@ def _published_sensitivity(resin: str, library: Library) -> float | None:
 
 
 def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float | None]:
-    """Change in percent with its ends; the halves of both intervals are added as squares."""
+    """Change in percent and the ends of its interval, None without one; half widths of both intervals are added as
+    squares."""
     new, old = fresh.figures[SENSITIVITY_KEY], aged.figures[SENSITIVITY_KEY]
     value = 100 * (old.value - new.value) / old.value
     if new.high is None or old.high is None:
@@ -301,7 +301,7 @@ def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float
 
 
 def figures_of(measured: CampaignReport, read_as: tuple[ReadFiles, ...]) -> MeasuredCampaign:
-    """The figures of a campaign, measured and predicted; ``read_as`` are the layouts that were found."""
+    """Figures of a campaign, measured and predicted, as a record; ``read_as`` are the layouts that were guessed."""
     campaign = measured.campaign
     return MeasuredCampaign(
         title=campaign.title,
@@ -338,7 +338,7 @@ def _group(comparison: GroupComparison) -> MeasuredGroup:
 
 
 def _depth(comparison: GroupComparison) -> float | None:
-    """The greatest depth of the runs that give a group's straight line, mm."""
+    """Greatest depth of the runs that give a group's straight line, mm; None if there is none or it is not known."""
     depths = [float(curve.indentation[-1]) for curve in comparison.group.lined if curve.indentation.size > 1]
     return round(max(depths), 4) if depths and np.isfinite(depths).all() else None
 
@@ -354,7 +354,7 @@ def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> Campai
 
 
 def of_run(run: CampaignRun) -> tuple[str, RunKind, str, str, int, float, float]:
-    """Values for the fields of `RunOfSensor`."""
+    """Values for the fields of `results.measured.RunOfSensor`."""
     return run.file, run.kind, run.sensor, run.resin, run.run, run.driving_pressure_kPa, run.age_days
 
 
@@ -364,5 +364,5 @@ def _run(curve: MeasuredCurve, values: dict[str, float]) -> MeasuredRun:
 
 
 def doubtful(part: SuspectInterval) -> tuple[float, float, str, bool]:
-    """Values for the fields of `DoubtfulPart`."""
+    """Values for the fields of `results.measured.DoubtfulPart`."""
     return round(part.start, 4), round(part.end, 4), part.why, part.used

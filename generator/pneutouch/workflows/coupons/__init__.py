@@ -1,4 +1,4 @@
-"""Prints that measure a machine, a resin and a leak."""
+"""Coupons: small prints that measure a machine, a resin and a leak."""
 
 from pneutouch.workflows.coupons.results import MeasuredProfile, write_profiles
 

@@ -1,7 +1,6 @@
-"""Write a set of coupons: STL, 3MF, the print-and-measure sheet, the results file to fill in, and a manifest.
+"""Writing of a set of coupons: STL, 3MF, print-and-measure sheet, results file to fill in, and manifest.
 
-Coupons on a printer's tray: side by side in rows, never turned, because a gauge's x and y are the machine's.
-"""
+Coupons lie on a printer's tray side by side in rows, never turned, because a gauge's x and y are the machine's."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -28,7 +27,8 @@ MARGIN, SPACING = 5.0, 5.0
 
 @dataclass(frozen=True)
 class CouponPiece:
-    """One solid of an item, its mesh lying on z = 0 with its least x and y at 0, and where its copies go."""
+    """One solid of an item; its mesh on z = 0 with least x and y at 0, the mesh's greatest deviation from the solid,
+    mm, and the places of its copies."""
 
     item: CouponItem
     solid: Solid
@@ -43,7 +43,7 @@ class CouponPiece:
         return x, y, z
 
     def copies(self) -> tuple[Body, ...]:
-        """The bodies in their places, numbered."""
+        """The bodies in their places, their names numbered."""
         return tuple(
             replace(self.body, name=f"{self.body.name}-{k}").moved(np.array([x, y, 0.0]))
             for k, (x, y) in enumerate(self.places, start=1)
@@ -51,7 +51,8 @@ class CouponPiece:
 
 
 def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, ...]:
-    """The pieces of one machine with their places. Raises InputError for what does not fit, or not in one job."""
+    """Pieces of one machine with their places. Raises InputError for a piece that does not fit, or what takes two
+    jobs."""
     printer = items[0].printer
     mode = job_mode(printer_name, items)
     pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.solids()]
@@ -76,7 +77,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
 
 
 def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
-    """The mode that prints everything in one job. Raises InputError if there is none."""
+    """Print mode that prints everything in one job. Raises InputError if there is none."""
     printer = items[0].printer
     mode = printer.mode_for(*(item.printed for item in items))
     if mode is None:
@@ -112,11 +113,11 @@ _MIXES = (
     "by "
     "droplet from voxel slices of the same fractions."
 )
-"""Instruction to get a mix from a machine that takes only catalogue materials."""
+"""Instruction for mixes on a machine that takes only catalogue materials."""
 
 
 def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
-    """Markdown for the operator and the bench."""
+    """Print-and-measure sheet as Markdown."""
     parts = [
         f"# Coupons: print and measure ({order.name})",
         "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results FILE`, with the "
@@ -157,7 +158,7 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
 
 
 def _casting(items: list[CouponItem]) -> list[str]:
-    """Steps to cast the coupons in the printed moulds, and the silicone to weigh."""
+    """Steps to cast the coupons in the printed moulds, with the silicone to weigh; none without moulds."""
     if not items:
         return []
     lines = ["The pieces above are open moulds; cast the coupons in them before you measure:"]
@@ -175,7 +176,7 @@ def _casting(items: list[CouponItem]) -> list[str]:
 
 
 def stl_name(piece: CouponPiece, order: CouponOrder) -> str:
-    """File of a piece; for another machine than the named one the machine is part of the name."""
+    """Name of a piece's STL file; it begins with the machine's name if that is not the order's printer."""
     item = piece.item
     return (
         f"{piece.body.name}.stl" if item.printer_name == order.profile else f"{item.printer_name}-{piece.body.name}.stl"
@@ -199,7 +200,7 @@ def _measuring(coupon: Coupon, items: list[CouponItem]) -> list[str]:
 
 
 def _table(item: CouponItem) -> list[str]:
-    """Cells to fill: a line for each feature and copy, or for each size of a feature with many sizes."""
+    """Table to fill in: a line for each feature and copy, or for each size of a feature with many sizes."""
     nominals = item.nominals
     if len({nominal.feature for nominal in nominals}) < len(nominals):
         return _sizes(nominals)
@@ -219,7 +220,7 @@ def _table(item: CouponItem) -> list[str]:
 
 
 def _sizes(nominals: tuple[Nominal, ...]) -> list[str]:
-    """The sizes of each feature, and their instrument."""
+    """Table to fill in for features with many sizes, below their instruments."""
     instruments = {nominal.feature: nominal.instrument for nominal in nominals}
     instruments_of = [f"- {feature}: {instrument}" for feature, instrument in instruments.items()]
     most = max(nominal.readings for nominal in nominals)
@@ -241,9 +242,8 @@ RESULTS, SHEET = "results.toml", "measure.md"
 def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> CouponSet:
     """Write the coupons into ``out/coupons-<printer>/``.
 
-    Raises InputError for what is unknown or does not fit the tray, and where readings in the folder would be lost.
-    The same input gives the same bytes.
-    """
+    Raises InputError for what is unknown or does not fit the tray, and if readings in the folder would be lost. The
+    same input gives the same bytes."""
     ordered = order(options, library)
     folder = out / ordered.name
     check_writable(folder)
@@ -262,7 +262,7 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
 
 
 def inputs(ordered: CouponOrder) -> Mapping[str, object]:
-    """Everything that the coupons depend on, as data."""
+    """All that the coupons depend on, as data."""
     scene = ordered.scene
     return {
         "profile": ordered.profile,
