@@ -1,4 +1,4 @@
-"""A design's sensor as its pressure-to-force model for a microcontroller, for Python and for a simulator."""
+"""Export of a sensor's pressure-to-force model for a microcontroller and Python, and of its model for a simulator."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ from pneutouch.wording import rounded
 
 @dataclass(frozen=True)
 class ReaderResult:
-    """A reader: the name of its folder, its record, the record as JSON data, the files made of that, by name, and the
-    reason why there is no sketch."""
+    """A reader: name of its folder, its record, the record as JSON data, the files made from that, by name, and the
+    reason why there is no sketch (None if there is one)."""
 
     name: str
     record: ReaderRecord
@@ -44,7 +44,7 @@ class ReaderResult:
 
 
 def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResult:
-    """The reader of a design; ``aged`` as in `reader_tables`. Raises what `evaluation.reader.reader_grid` does."""
+    """Reader of a design; ``aged`` as in `reader_tables`. Raises what `evaluation.reader.reader_grid` does."""
     grid = reader_grid(evaluation)
     tables = reader_tables(evaluation, grid, aged)
     known = reader_difference(evaluation, grid, versioned("reader", plain(tables)))
@@ -69,13 +69,13 @@ def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResu
 
 
 def _source(evaluation: Evaluation, age_days: float) -> str:
-    """SHA-256 of all that a reader follows from: the design with all that it names, options, age, version."""
+    """SHA-256 of all inputs of a reader: the resolved design, options, age, version."""
     inputs = BuildRecipe.of(evaluation).inputs()
     return digest(json_bytes({"inputs": inputs, "age_days": age_days, "version": __version__}))
 
 
 def write_reader(result: ReaderResult, out: Path) -> Path:
-    """Write ``out/<design>-reader/``; the same input, the same bytes. Returns that folder."""
+    """Write ``out/<design>-reader/`` and return that folder. The same input gives the same bytes."""
     folder = out / result.name
     files = {"reader.json": json_bytes(result.document), **result.files}
     write_folder(folder, with_manifest(files, result.name, result.document["source"]))
@@ -110,7 +110,7 @@ _URDF = """\
 
 
 def readme(sensor: SimulatedSensor, kind: str) -> bytes:
-    """The README of a model."""
+    """README of a simulator's model of ``kind``."""
     table = sensor.tables[0]
     text = {"mujoco": _MUJOCO, "urdf": _URDF}[kind].format(
         name=sensor.name,
@@ -125,17 +125,17 @@ def readme(sensor: SimulatedSensor, kind: str) -> bytes:
 
 
 SIMULATORS = {"mujoco": mjcf_files, "urdf": urdf_files}
-"""Writers of the files of a simulator's model, by the name of its format."""
+"""Functions that make the files of a simulator's model, by the name of its format."""
 
 STEPS = 80
-"""Steps of a press: the spline through them is within 1 % of the model from a fiftieth of the range on."""
+"""Steps of a press: above a fiftieth of the range, the spline through them is within 1 % of the model."""
 
 _DIGITS = 6
 
 
 @dataclass(frozen=True)
 class SimulatorResult:
-    """A model: the name of its folder, its record, and its files by path."""
+    """A simulator's model: name of its folder, its record, its files by path, and the inputs for the manifest."""
 
     name: str
     record: SimulatorRecord
@@ -144,7 +144,7 @@ class SimulatorResult:
 
 
 def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
-    """The sensor of an evaluated design for a simulator of `SIMULATORS`.
+    """Model of an evaluated design's sensor for the simulator ``kind``, one of `SIMULATORS`.
 
     Raises InputError for another simulator and for contact off the axis, ComputationError where a press has no range.
     """
@@ -166,7 +166,7 @@ def _simulated(evaluation: Evaluation) -> SimulatedSensor:
 
 
 def press_tables(evaluation: Evaluation, steps: int = STEPS) -> tuple[PressTable, ...]:
-    """The press at the design's driving pressures, in equal steps."""
+    """Presses at the design's driving pressures, in equal steps."""
     sensor, options = evaluation.sensor.replace(steps=steps), evaluation.options
     prediction = predict(
         evaluation.scene.name,
@@ -209,7 +209,7 @@ def _record(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> Simul
 
 
 def write_simulator(result: SimulatorResult, out: Path) -> Path:
-    """Write ``out/<design>-<simulator>/``; the same input, the same bytes. Returns that folder."""
+    """Write ``out/<design>-<simulator>/`` and return that folder. The same input gives the same bytes."""
     folder = out / result.name
     write_folder(folder, with_manifest(result.files, result.name, result.inputs))
     return folder

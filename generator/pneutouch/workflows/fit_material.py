@@ -1,4 +1,4 @@
-"""``fit-material``: the law of a material from the tensile or puck test of a laboratory, and the material file."""
+"""Work of ``fit-material``: the law of a material from a laboratory's tensile or puck test, and its material file."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from pneutouch.spec.values import Quantity, file_name, plain_name
 from pneutouch.wording import rounded
 
 HARDNESS_SHARE = (0.4, 0.65)
-"""Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.49, five
-of the six silicones on the Shore A scale 0.44 to 0.52 (docs/reference/materials.md)."""
+"""Usual range of Young's modulus over that of Gent's relation for the hardness: TangoPlus by the paper's modulus has
+0.49, five of the six silicones on the Shore A scale 0.44 to 0.52 (docs/reference/materials.md)."""
 
 _MOST_BYTES = 100_000_000
 _GRID = 200
 
 
 def fit_report(fitted: FittedMaterial) -> MaterialFit:
-    """All results of a fit."""
+    """Record of a fit."""
     choice, law = fitted.choice, fitted.law
     small = hyperelastic(law.form.name, law.constants, 0.49).mu
     fits = (law,) if choice is None else choice.fits
@@ -63,7 +63,7 @@ def fit_report(fitted: FittedMaterial) -> MaterialFit:
 
 
 def _figures(fit: LawFit) -> tuple[str, str, tuple[float, ...], tuple[float, ...], float, float]:
-    """The fields of a law's record."""
+    """Fields of a law's record."""
     return fit.form.name, fit.form.label, fit.constants, fit.errors, 100 * fit.misfit, 100 * fit.worst
 
 
@@ -95,7 +95,7 @@ def _notes(fitted: FittedMaterial, small: float) -> list[str]:
 
 
 def _uncast(fitted: FittedMaterial) -> list[str]:
-    """Note on a material that no profile makes and that lacks the data for casting; else empty."""
+    """Note on a material that no printer profile makes and whose file lacks the data for casting; else none."""
     if _material(fitted).is_cast or _profile(fitted) is not None:
         return []
     return [
@@ -105,7 +105,7 @@ def _uncast(fitted: FittedMaterial) -> list[str]:
 
 
 def _profile(fitted: FittedMaterial) -> str | None:
-    """The profile that makes the material: one that casts where it is cast; None if none runs it."""
+    """Name of a profile that makes the material, for a cast one rather one that casts; None if none runs it."""
     material = _material(fitted)
     made = makers(material, Library.default())
     cast = [name for name, one in made.items() if one.is_casting == material.is_cast]
@@ -117,7 +117,7 @@ def _material(fitted: FittedMaterial) -> Material:
 
 
 def _hardness(fitted: FittedMaterial, small: float) -> list[str]:
-    """Note on the modulus against the hardness that the material file states."""
+    """Note that compares the modulus with the hardness in the material file; none without a hardness."""
     material = _material(fitted)
     if material.shore_a is None:
         return []
@@ -150,7 +150,8 @@ def _chart(fitted: FittedMaterial) -> str:
 
 
 def fit_material(data: Sequence[Path], options: FitOptions, library: Library | None = None) -> FittedMaterial:
-    """Read, check and fit; nothing is written. Raises InputError for unusable data and for a file not made by a fit."""
+    """Read, check and fit; nothing is written. Raises InputError for unusable data, and if a file of the name is not of
+    a fit."""
     plain_name(options.name, key="name")
     size = puck_of(options)
     if not data:
@@ -178,7 +179,7 @@ def fit_material(data: Sequence[Path], options: FitOptions, library: Library | N
 
 
 def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Path:
-    """Write the material file into the user's folder, and plot and figures into ``out/fit-<name>/``; that folder."""
+    """Write the material file into the user's folder, plot and figures into ``out/fit-<name>/``; return that folder."""
     folder = out / f"fit-{fitted.options.name}"
     check_writable(folder)
     inputs = {
@@ -195,7 +196,7 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
 
 
 def puck_of(options: FitOptions) -> PuckSize | None:
-    """The size of the puck, where the test is one."""
+    """Size of the puck if the test is one; else None."""
     if options.puck_mm is None:
         return None
     diameter, thickness = options.puck_mm
@@ -210,13 +211,12 @@ class FittedMaterial:
         data: Tensile files, one for each specimen; for a puck one file.
         options: Options as given.
         law: The law taken.
-        neo_hookean: The neo-Hookean law over the same stretches.
+        neo_hookean: The neo-Hookean law fitted over the same stretches.
         largest: Stretch of tension up to which the laws were fitted.
         choice: The fits of all laws; None for a puck.
         puck: The fit of a puck; None for tension.
-        path: The material file.
-        text: Its content.
-    """
+        path: Path of the material file.
+        text: Content of the material file."""
 
     data: tuple[Path, ...]
     options: FitOptions
@@ -238,7 +238,7 @@ _POISSON = {
 
 
 def material_file(fitted: FittedMaterial, library: Library) -> str:
-    """The text of the file, checked as a material. Raises InputError if a file of that name is not of a fit."""
+    """Content of the material file, checked. Raises InputError if a file of that name is not of a fit."""
     check_of(fitted.path, _COMMAND, "give another `name`, or move it away")
     content = _base(fitted, library)
     measured: dict[str, Quantity | HyperelasticLaw] = {"shear_modulus_MPa": _modulus(fitted), "law": _law(fitted)}
@@ -257,13 +257,13 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
 
 
 def _four(value: float) -> float:
-    """A value to four significant digits, more than a test has."""
+    """The value to four significant digits, more than a test has."""
     return float(f"{value:.4g}")
 
 
 def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:
-    """Known data of the material: of the material that it is like, or of a shipped one of its name; else those that a
-    file needs."""
+    """Data of the material that are known: those of the one it is ``like``, or of a shipped one of its name; else the
+    least that a file needs. Raises InputError for a rigid one, or without a density."""
     name, facts = fitted.options.name, fitted.options
     known = library.paths("materials")
     like = facts.like or (name if name in known and known[name] != fitted.path else None)
@@ -332,7 +332,7 @@ def _slack(fitted: FittedMaterial) -> str:
 
 
 def _test(fitted: FittedMaterial) -> str:
-    """Description of the test, in words."""
+    """Text that describes the test."""
     names = ", ".join(file_name(path.name) for path in fitted.data)
     puck = puck_of(fitted.options)
     if puck is not None:

@@ -1,4 +1,4 @@
-"""Order of coupons: those that the user asked for, each on its machine and in its material; and the results file."""
+"""Order of coupons: which are printed, on which machine and in which material; and the results file to fill in."""
 
 import textwrap
 from collections.abc import Mapping, Sequence
@@ -24,14 +24,14 @@ from pneutouch.spec.toml_text import key_text, value_text
 from pneutouch.wording import counted
 
 FRACTIONS = (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.27, 0.35)
-"""Volume fractions of the stiff resin that are printed: our own choice for TangoPlus with VeroClear, whose curve ends
+"""Volume fractions of the stiff resin in printed mixes: our own choice for TangoPlus with VeroClear, whose curve ends
 at 35.6 %. By each curve of that pair the modulus rises less than 2.5-fold from one fraction to the next, as far as the
 curve is known (docs/background/mixing.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class CouponMix:
-    """Mix of a pair of resins ``SOFT+STIFF`` at one fraction."""
+    """Mix of a pair of resins ``SOFT+STIFF`` at one volume fraction of the stiff one."""
 
     pair: str
     fraction: float
@@ -44,7 +44,7 @@ class CouponMix:
 
 
 def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str]:
-    """The soft and the stiff resin of ``SOFT+STIFF``. Raises InputError for anything else."""
+    """Soft and stiff resin of a text ``SOFT+STIFF``. Raises InputError for any other text."""
     names = [name.strip() for name in pair.split("+")]
     if len(names) != 2 or not all(names) or names[0] == names[1]:
         raise InputError("write two resins, SOFT+STIFF, such as TangoPlus+VeroClear", file=file, key=key, value=pair)
@@ -52,9 +52,9 @@ def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str
 
 
 def blends(pair: str, library: Library) -> list[CouponMix]:
-    """Mixes of a pair to print, up to the end of its mixing curve or to the stiffness that a membrane may have.
+    """Mixes of a pair to print, up to the end of its mixing curve or to the stiffest that a membrane may have.
 
-    Raises InputError if there is no curve."""
+    Raises InputError for unknown resins or a pair without a curve."""
     soft, stiff = resins_of(pair, key="mixing")
     for name in (soft, stiff):
         library.load("materials", name, key="mixing")
@@ -71,7 +71,7 @@ def blends(pair: str, library: Library) -> list[CouponMix]:
 MOST_COPIES = 100
 
 MIXED = ("puck", "dumbbell")
-"""Names of the coupons that a mix has."""
+"""Names of the coupons that are printed of mixes."""
 
 MIXED_COPIES = 2
 """Copies of each fraction: the least that gives a spread, two pucks making the 6 mm under the durometer."""
@@ -79,7 +79,7 @@ MIXED_COPIES = 2
 
 @dataclass(frozen=True)
 class CouponOptions:
-    """Options of the user; None leaves the choice to the program."""
+    """Options of the user; one that is None or empty is left to the program."""
 
     profile: str | None = None
     materials: Sequence[str] = ()
@@ -91,11 +91,10 @@ class CouponOptions:
 
 @dataclass(frozen=True)
 class CouponItem:
-    """One coupon to print: ``about`` is the material or design that the results file files it under.
+    """One coupon to print: ``about`` is the material or design under which the results file lists it.
 
-    ``blend`` is given for a coupon of two resins in a known fraction, and then states where it is filed. ``mould`` is
-    the material of the mould of a cast coupon; ``printer`` then prints the mould.
-    """
+    ``blend`` is given for a coupon of a mix, which is listed by pair and fraction. ``mould`` is the mould's material
+    for a cast coupon, whose ``printer`` prints the mould; else None."""
 
     coupon: Coupon
     about: str
@@ -108,7 +107,7 @@ class CouponItem:
 
     @property
     def material(self) -> Material:
-        """Material that the coupon is of."""
+        """Material of the coupon."""
         return self.context.material
 
     @property
@@ -133,7 +132,7 @@ class CouponItem:
 
 @dataclass(frozen=True)
 class CouponOrder:
-    """Everything to print. ``name`` is the folder's; ``profile`` the printer that the user named."""
+    """Everything to print. ``name`` is that of the output folder, ``profile`` the printer named or the default one."""
 
     name: str
     profile: str
@@ -141,14 +140,14 @@ class CouponOrder:
     items: tuple[CouponItem, ...]
 
     def machines(self) -> dict[str, tuple[CouponItem, ...]]:
-        """Items by printer, the named one first."""
+        """Items by printer name, ``profile`` first."""
         names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
         groups = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
         return {name: items for name, items in groups.items() if items}
 
 
 def order(options: CouponOptions, library: Library | None = None) -> CouponOrder:
-    """Resolve every name. Raises InputError for one unknown, in contradiction, or not run by the machine."""
+    """The order that the options ask for. Raises InputError for unknown or contradictory names, or a wrong machine."""
     library = library or Library.default()
     scene = None if options.design is None else load_scene(options.design, None, library)
     profile = options.profile or (Print().profile if scene is None else scene.design.print.profile)
@@ -210,8 +209,8 @@ def _families(options: CouponOptions) -> list[Coupon]:
 def _materials(
     options: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, library: Library
 ) -> list[str]:
-    """Materials: those the user named; else the design's membrane; else the default resin if the printer runs it, else
-    its first."""
+    """Names of the materials: those the user named (none with mixes alone); else the design's membrane if its printer
+    is the one; else the default resin if the printer runs it, else the first that it runs."""
     if options.materials or options.mixing:
         return list(dict.fromkeys(options.materials))
     if scene is not None and scene.design.print.profile == profile:
@@ -229,7 +228,8 @@ def _materials(
 def _of_mixing(
     options: CouponOptions, profile: str, printer: Printer, families: list[Coupon], library: Library
 ) -> list[CouponItem]:
-    """The mixing set: every fraction of each pair; pucks, and dumbbells if asked for (they take a large tray)."""
+    """Coupons of mixes: every fraction of each pair; pucks, and dumbbells only if asked for (they take a large
+    tray)."""
     chosen = [
         coupon
         for coupon in families
@@ -261,7 +261,7 @@ def _of_mixing(
 
 
 def _of_design(options: CouponOptions, scene: ResolvedDesign, profile: str, families: list[Coupon]) -> list[CouponItem]:
-    """Cap and plug, and the gauge of the connector's machine where that is another one."""
+    """Cap and plug of the design, and the gauge of the connector's machine if that is not ``profile``."""
     machine, printer = scene.design.print.connector_profile, scene.connector_printer
     context, material = CouponContext(scene.connector_material, scene), scene.design.connector.material
     items = []
@@ -299,7 +299,7 @@ _HEAD = """\
 
 
 def results_template(order: CouponOrder) -> str:
-    """TOML that becomes valid once lab and date are given."""
+    """Results file to fill in: TOML that is valid as soon as lab and date are given."""
     blocks = [_HEAD + '# lab = "who measured"\n# date = 2026-11-21']
     filed: set[tuple[str, float]] = set()
     for item in order.items:
@@ -316,7 +316,7 @@ def results_template(order: CouponOrder) -> str:
 
 
 def _mixed(item: CouponItem, *, first: bool) -> str:
-    """A coupon of one fraction: hardness stands in the fraction's own table, dumbbells in one below."""
+    """Lines of a coupon of a mix: hardness in the fraction's table, begun if ``first``; dumbbells in one below."""
     assert item.blend is not None
     path = f"mixing.{key_text(item.blend.pair)}"
     lines = [f"[[{path}]]", f"fraction = {value_text(item.blend.fraction)}"] if first else []
@@ -346,7 +346,7 @@ def _table(item: CouponItem, path: str) -> str:
 
 
 def _settings(model: type[BaseModel]) -> list[str]:
-    """Lines for the numbers that state how a coupon was measured, with their help, at their defaults."""
+    """Lines for the numbers that state how a coupon was measured: their help, and their defaults."""
     lines = []
     for key, info in model.model_fields.items():
         if isinstance(info.default, float):
@@ -374,7 +374,7 @@ def _rows(feature: str, nominals: list[Nominal]) -> list[str]:
 
 
 def _model(coupon: str) -> type[BaseModel]:
-    """The model of one table of a coupon in the results file."""
+    """Model of one table of a coupon in the results file."""
     field = next(name for name, info in CouponResults.model_fields.items() if coupon in (name, info.alias))
     kind: Any = CouponResults.model_fields[field].annotation
     while not (isinstance(kind, type) and issubclass(kind, BaseModel)):

@@ -1,4 +1,4 @@
-"""Measured coupons as figures, as profiles of the lab's own, and as its own mixing curve."""
+"""Results of measured coupons: figures, the laboratory's own profiles, and its own mixing curve."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ HEAD = head_of(_COMMAND)
 
 @dataclass(frozen=True, slots=True)
 class MeasuredProfile:
-    """A profile to write: its file, its text, and its changes."""
+    """A profile to write: path, text, and the quantities that it changes."""
 
     path: Path
     text: str
@@ -39,7 +39,8 @@ class MeasuredProfile:
 
 
 def base_file(kind: str, name: str, library: Library) -> Path:
-    """The first profile of this name that the command did not write; if there is none, the first that it wrote."""
+    """Path of the first profile of this name that the command did not write; without one, of the first that it
+    wrote."""
     candidates = [root / KINDS[kind].folder / f"{name}.toml" for root in library.folders]
     there = [path for path in candidates if path.is_file()]
     return next((path for path in there if not is_of(path, _COMMAND)), there[0])
@@ -48,11 +49,10 @@ def base_file(kind: str, name: str, library: Library) -> Path:
 def local_profiles(
     changes: Sequence[ProfileChange], source: ReadingSource, library: Library, out: Path
 ) -> list[MeasuredProfile]:
-    """One profile for each material and printer that something was measured of, checked but not written.
+    """Profiles of the materials and printers that were measured, checked but not written.
 
-    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError if a file
-    of that name was not written by the command.
-    """
+    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError if a file of
+    a profile's name was not written by the command."""
     profiles = []
     for kind, name in dict.fromkeys((change.kind, change.name) for change in changes):
         path = out / KINDS[kind].folder / f"{name}.toml"
@@ -69,7 +69,7 @@ def local_profiles(
 
 
 def head(source: ReadingSource, what: str) -> str:
-    """The first lines of a profile that the command writes."""
+    """First lines of a profile that the command writes."""
     return whole_head(_COMMAND, f"{source.where} ({source.lab}, {source.date.isoformat()}): {what}")
 
 
@@ -79,13 +79,14 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
 
 
 def check_ours(path: Path, keys: str) -> bool:
-    """True if the command wrote the file. Raises InputError if it did not; ``keys`` are the entries to write."""
+    """True if the command wrote the file, False if there is none. Raises InputError for another's file; ``keys`` are to
+    go in."""
     remedy = f"put {keys} into it by hand, move it away, or give another folder with `out`"
     return check_of(path, _COMMAND, remedy)
 
 
 def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
-    """Take over the quantities whose source is a coupon."""
+    """Copy the quantities of an earlier profile that were measured on coupons into ``content``."""
     for key, value in earlier.items():
         if not isinstance(value, dict):
             continue
@@ -96,7 +97,7 @@ def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
 
 
 def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> ChangedQuantity:
-    """Put a quantity in its place; its old and new values."""
+    """Put a measured quantity into ``content``; return its old and new value."""
     *tables, last = change.keys
     owner = content
     for table in tables:
@@ -117,8 +118,7 @@ def local_curve(
     """The lab's mixing curve of a pair, checked but not written; None if nothing was measured.
 
     Figures and notes go to ``results``. Raises InputError for unknown resins, for moduli that do not rise with the
-    fraction, and where a curve of that name was not written by the command.
-    """
+    fraction, and if a curve of that name was not written by the command."""
     where = f"{source.where}: mixing"
     soft_name, stiff_name = resins_of(pair, file=source.where, key="mixing")
     pair = f"{soft_name}+{stiff_name}"
@@ -172,7 +172,7 @@ def _curve(soft: str, stiff: str, known: Sequence[MixModulus], source: ReadingSo
 
 
 def _changes(path: Path, curve: MixingCurve, pair: str, library: Library) -> tuple[ChangedQuantity, ...]:
-    """Every measured point, compared with the curve that was in force before."""
+    """Measured points of a curve, each beside the modulus of the curve that was in force before, None without one."""
     before = mixing(curve.soft, curve.stiff, library) if pair in library.paths("mixing") else None
     rows = []
     for point in curve.points:
@@ -189,8 +189,8 @@ def _changes(path: Path, curve: MixingCurve, pair: str, library: Library) -> tup
 def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> CouponReport:
     """Read a results file, compute, and write local profiles under ``out``, else in the user's folder.
 
-    Raises InputError for a bad file, for one without readings, and instead of overwriting a profile that the command
-    did not write."""
+    Raises InputError for a bad file, for one without readings, and if a profile to be written has a file that the
+    command did not write."""
     library, out = library or Library.default(), out or user_folder()
     results = read_results(path)
     findings = evaluate_results(results, str(path), library)
@@ -212,7 +212,7 @@ def enter_results(path: Path, out: Path | None = None, library: Library | None =
 
 
 def evaluate_results(results: CouponResults, where: str, library: Library) -> CouponFindings:
-    """Figures and changed quantities of a results file; ``where`` is the file, for messages."""
+    """Figures, notes and changed quantities of a results file; ``where`` is its path, for messages."""
     findings, source = CouponFindings(), ReadingSource(where, results.lab, results.date)
     for name, read in results.puck.items():
         puck(name, _material(name, where, "puck", library), read, source, findings)
@@ -257,7 +257,7 @@ def _material(name: str, file: str, key: str, library: Library) -> Material:
 
 
 def _shipped(kind: str, name: str, file: str, key: str, library: Library) -> Any:
-    """A profile as it was before the command wrote one. Raises InputError if the name is unknown."""
+    """Profile as it was before the command wrote one of its name. Raises InputError if the name is unknown."""
     library.load(kind, name, file=file, key=key)
     path = base_file(kind, name, library)
     return KINDS[kind].validate(read_toml(path), str(path))

@@ -29,17 +29,17 @@ from pneutouch.spec.tasks import TASK_FIGURES
 from pneutouch.units import KPA
 
 BUDGET_KEYS = {"force_range_N": "force_at_range_end_N"}
-"""Keys in the budget of figures that have another key in a task, by the latter."""
+"""For figures whose key in the uncertainty differs from that in a task: the former by the latter."""
 
 _TOP = 0.98
-"""Share of the least nominal limit up to which the figures are computed: at the limit point itself they end."""
+"""Share of the least nominal limit up to which figures are computed: they end at the limit point itself."""
 
 _POINTS = {"atlas": 33, "membrane": 33}
 _FEW = 13
-"""Numbers of driving pressures: for models that take microseconds, and for those that take a second."""
+"""Numbers of driving pressures: for models that take microseconds, by name, and for models that take a second."""
 
 _BUDGETS = 7
-"""Number of driving pressures at which the uncertainty is computed; it changes slowly between them."""
+"""Number of driving pressures at which the uncertainty is computed; it varies slowly between them."""
 
 ReachProgress = Callable[[int, int, str], None]
 
@@ -49,11 +49,10 @@ class ReachCurves:
     """A sensor at n driving pressures, rising.
 
     Attributes:
-        evaluation: The vented sensor.
-        model: The model of all states.
-        states: The states in order of driving pressure; `add` inserts one.
-        budgets: Driving pressures (MPa) and the documents of the uncertainty there.
-    """
+        evaluation: Evaluation of the design at a driving pressure of 0.
+        model: Name of the model of all states.
+        states: States at ascending driving pressures; `add` inserts one.
+        budgets: Driving pressures (MPa) and the records of the uncertainty there."""
 
     evaluation: Evaluation
     model: str
@@ -66,11 +65,11 @@ class ReachCurves:
         return np.array([state.driving_pressure for state in self.states])
 
     def values(self, figure: str) -> Array:
-        """A figure by its key at every driving pressure, in its unit (n,); NaN for a missing one."""
+        """A figure by its key at every driving pressure, (n,), in the figure's unit; NaN where a state has none."""
         return np.array([figure_of(state, figure) for state in self.states])
 
     def widths(self, figure: str) -> Array:
-        """Expanded uncertainty (k = 2) of the logarithm of a figure at every driving pressure (n,); NaN: not known."""
+        """Expanded uncertainty (k = 2) of a figure's logarithm at every driving pressure, (n,); NaN if not known."""
         key = BUDGET_KEYS.get(figure, figure)
         known = [
             (pressure, 2.0 * entry.known[key].standard_uncertainty_relative)
@@ -84,7 +83,7 @@ class ReachCurves:
 
     @property
     def gas(self) -> SealedGas:
-        """The gas at every driving pressure."""
+        """Gas in the sensor at every driving pressure."""
         sensor = self.evaluation.sensor
         volumes = np.array([state.cavity_volume for state in self.states])
         return SealedGas(self.pressures, volumes, sensor.gas.dead_volume, sensor.gas.ambient_pressure, volumes[0])
@@ -103,7 +102,7 @@ class ReachCurves:
 
 
 def figure_of(state: SensorState, figure: str) -> float:
-    """A figure of a task by its key, in its unit; NaN if the state has none."""
+    """A figure by its key in a task, in the figure's unit; NaN if the state has no figures."""
     return float("nan") if state.figures is None else line_figures(state.figures)[figure]
 
 
@@ -116,10 +115,10 @@ def reach_curves(
     progress: ReachProgress = lambda done, total, what: None,
     **options: object,
 ) -> ReachCurves:
-    """Evaluate a design over driving pressures, whichever it lists itself. Raises InputError.
+    """Evaluate a design from 0 up to nearly its least limit, whatever driving pressures it lists.
 
-    At a local extremum of a curve the pressure of the vertex of a parabola is added, so that the ends of the reachable
-    values are met.
+    At a local extremum of a figure the pressure at the vertex of a parabola is added, so that the ends of the reachable
+    values are met. Raises what `evaluate` does.
     """
     vented = {**changes, "pneumatics.driving_pressures_kPa": [0.0]}
     progress(0, 3, "evaluating the vented sensor")
@@ -153,7 +152,7 @@ def reach_curves(
 
 
 def _extrema(pressures: Array, values: Array) -> list[float]:
-    """Pressures of the vertices of the parabolas through every interior local extremum and its neighbours."""
+    """Pressures at the vertices of the parabolas through each interior local extremum and its neighbours."""
     vertices = []
     for k in range(1, len(values) - 1):
         below, at, above = values[k - 1 : k + 2]
@@ -168,7 +167,7 @@ def _extrema(pressures: Array, values: Array) -> list[float]:
 
 
 _EXACT = 1e-6
-"""Relative distance to the required value at which a solution is taken."""
+"""Relative distance to the required value below which a solution is accepted."""
 
 _TRIES = 40
 
@@ -180,7 +179,7 @@ _JUMPED = 1e-3
 class PressureBand:
     """Driving pressures (MPa) at which the k = 2 interval of the figure holds the required value.
 
-    ``open_low``, ``open_high``: True if the band reaches the vented sensor or the highest pressure computed.
+    ``open_low``, ``open_high``: True if the band ends at 0, or at the highest pressure computed.
     """
 
     low: float
@@ -191,14 +190,14 @@ class PressureBand:
 
 @dataclass(frozen=True)
 class DrivingSolution:
-    """A state whose figure has the required value; ``band`` is None if the uncertainty is not known."""
+    """State whose figure has the required value; ``band`` is None if the uncertainty is not known."""
 
     state: SensorState
     band: PressureBand | None
 
 
 def solutions(curves: ReachCurves, figure: str, value: float) -> list[DrivingSolution]:
-    """Every driving pressure at which a figure has a value, rising. Every bracket of the computed states is solved."""
+    """All driving pressures at which a figure has a value, ascending, solved in every bracket of computed states."""
     pressures, values = curves.pressures, curves.values(figure)
     roots: list[float] = []
     for k in range(len(pressures)):
@@ -214,7 +213,7 @@ def solutions(curves: ReachCurves, figure: str, value: float) -> list[DrivingSol
 
 
 def _root(curves: ReachCurves, figure: str, value: float, ends: tuple[float, float]) -> float | None:
-    """The pressure in a bracket at which the model itself gives the value (Illinois); None if the figure jumps."""
+    """Pressure between two ends at which the model gives the value (Illinois method); None if the figure jumps."""
     low, high = ends
     off_low, off_high = (figure_of(curves.add(end), figure) / value - 1.0 for end in ends)
     middle = off = np.nan
@@ -232,9 +231,10 @@ def _root(curves: ReachCurves, figure: str, value: float, ends: tuple[float, flo
 
 
 def band(curves: ReachCurves, figure: str, value: float, near: float) -> PressureBand | None:
-    """The band about a driving pressure (MPa), or None if the uncertainty of the figure is not known.
+    """Band about a driving pressure (MPa); None if the uncertainty of the figure is not known.
 
-    With f the predicted figure and w the expanded uncertainty of its logarithm it holds where \\|ln(f/value)\\| <= w.
+    With f the predicted figure and w the expanded uncertainty of its logarithm, the band is where \\|ln(f/value)\\| <=
+    w.
     """
     pressures, excess = curves.pressures, _excess(curves, figure, value)
     at = int(np.argmin(np.abs(pressures - near)))
@@ -250,18 +250,18 @@ def band(curves: ReachCurves, figure: str, value: float, near: float) -> Pressur
 
 
 def possible(curves: ReachCurves, figure: str, value: float) -> PressureBand | None:
-    """Lowest band of driving pressures where the figure may have the value within its uncertainty; None without one."""
+    """Lowest band of driving pressures where the figure may have the value within its uncertainty; else None."""
     inside = np.flatnonzero(_excess(curves, figure, value) <= 0.0)
     return None if inside.size == 0 else band(curves, figure, value, float(curves.pressures[inside[0]]))
 
 
 def _excess(curves: ReachCurves, figure: str, value: float) -> Array:
-    """Distance by which the value lies outside the interval, in ln (n,); NaN if either is not known."""
+    """Distance in ln by which the value lies outside the figure's interval, (n,); NaN if either is not known."""
     return np.asarray(np.abs(np.log(curves.values(figure) / value)) - curves.widths(figure))
 
 
 def _crossing(pressures: Array, excess: Array, inside: int, outside: int) -> float:
-    """Pressure at which the excess is zero between two states; the inside one's if no other has a figure."""
+    """Pressure at which the excess is zero between two states; that of ``inside`` if the other has no figure."""
     if not 0 <= outside < len(pressures) or np.isnan(excess[outside]):
         return float(pressures[inside])
     share = excess[inside] / (excess[inside] - excess[outside])
@@ -273,9 +273,9 @@ _MOST_BYTES = 100_000_000
 
 @dataclass(frozen=True)
 class LeakSource:
-    """A measured leak: fall of the pressure in kPa/min at a gauge pressure in kPa, and where it was measured.
+    """A measured leak: fall of the pressure in kPa/min at a gauge pressure in kPa, and ``where``, its file.
 
-    ``cap``: behind the leak-test cap, in the gas of connector and tube alone; else on the sensor itself.
+    ``cap``: True behind the leak-test cap, in the gas of connector and tube alone; False on the sensor itself.
     """
 
     rate_kPa_per_min: float
@@ -284,7 +284,7 @@ class LeakSource:
     where: str
 
     def conductance(self, gas: SealedGas, assembly: Assembly) -> float:
-        """Conductance of the leak, mm3/s: see `mechanics.sealed_gas`."""
+        """Conductance of the leak, mm3/s; see `mechanics.sealed_gas`."""
         rate = self.rate_kPa_per_min * KPA / 60.0
         if self.cap:
             volume = gas.dead_volume or assembly.internal_volume + assembly.tube_volume
@@ -294,9 +294,9 @@ class LeakSource:
 
 
 def read_leak(path: Path, design: str) -> LeakSource:
-    """The leak of a design from a results file of coupons (TOML) or the folder or figures.json of `characterize`.
+    """Leak of a design from a results file of coupons (TOML), or from a folder or figures.json of `characterize`.
 
-    Raises InputError for other files, for another design and where no leak was measured.
+    Raises InputError for other files, for another design, and if no leak was measured.
     """
     if path.is_dir():
         path = path / "figures.json"

@@ -1,4 +1,4 @@
-"""Driving pressures for the tasks of a sensor, the gas of each and how long it stays; or changes of the design."""
+"""Driving pressures for the tasks of a sensor, the gas each takes and how long that holds; or changes of the design."""
 
 from __future__ import annotations
 
@@ -50,17 +50,17 @@ _FIELDS = {
     "shear_modulus": ("shear modulus of the resin, MPa", 1.0),
     "dead_volume": ("pneumatics.dead_volume_mL", ML),
 }
-"""Inputs of the model that a design can change: the user's name for each, and the user's unit in the model's unit."""
+"""Inputs of the model that a design can change: name for the user, and the user's unit in the model's unit."""
 
 _FARTHEST = 2.0
-"""Greatest factor on an input for which its derivative is followed: our choice."""
+"""Greatest factor on an input up to which its derivative is extrapolated: our choice."""
 
 
 def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[OfflineChange]:
-    """Changes of one input each by which the figure comes nearer to the value, least change first.
+    """Changes of one input each that bring the figure nearer to the value, least change first; none if none does.
 
-    The input is moved by the elasticity of the figure at the nearest state; ``predicted`` is the figure that the model
-    then has."""
+    Each is computed from the figure's elasticity at the state nearest to the value; ``predicted`` is the model's figure
+    after the change."""
     values = curves.values(figure)
     if np.isnan(values).all():
         return []
@@ -87,7 +87,7 @@ def _input(curves: ReachCurves, name: str) -> float:
 
 
 def _with(curves: ReachCurves, name: str, value: float, pressure: float, figure: str) -> float | None:
-    """The figure with one input changed, at a driving pressure in MPa; None if the model has none."""
+    """The figure with input ``name`` at ``value``, at a driving pressure in MPa; None if the model gives none."""
     sensor = curves.evaluation.sensor.replace(**{name: value})
     try:
         states = predict("changed", sensor, [pressure], model=curves.model).states
@@ -98,15 +98,15 @@ def _with(curves: ReachCurves, name: str, value: float, pressure: float, figure:
 
 
 HOLD_SHARE = 0.01
-"""The figure may change by this share while the sealed gas holds it: our choice."""
+"""Relative change of the figure up to which the sealed gas counts as holding it: our choice."""
 
 
 @dataclass(frozen=True)
 class TaskAnswer:
-    """A task and the driving pressures that fulfil it, the preferred one (the lowest) first.
+    """A task and the driving pressures that fulfil it, ascending: the first, which ``gas`` belongs to, is preferred.
 
-    Without a solution: ``changes`` of the design, and the band in which the sensor in hand may still reach the value.
-    """
+    Without one ``gas`` is None; ``changes`` of the design may help, or the band ``possible`` within the uncertainty (or
+    None)."""
 
     task: DrivingTask
     solutions: tuple[DrivingSolution, ...]
@@ -122,7 +122,7 @@ class TaskAnswer:
 
 @dataclass(frozen=True)
 class DrivingSchedule:
-    """The answers to tasks in their order, and the curves they were solved on."""
+    """Answers to tasks, in the order of the tasks, and the curves that they were solved on."""
 
     curves: ReachCurves
     answers: tuple[TaskAnswer, ...]
@@ -145,10 +145,10 @@ def driving_schedule(
     progress: ReachProgress = lambda done, total, what: None,
     **options: object,
 ) -> DrivingSchedule:
-    """Solve every task of a design for its driving pressure.
+    """Find the driving pressures for every task of a design.
 
-    ``leak`` is what was measured on this design. ``options`` are those of `evaluation.evaluate`. Raises InputError.
-    """
+    ``leak`` was measured on this design (None: not known). ``options`` are those of `evaluation.evaluate`. Raises
+    InputError."""
     curves = reach_curves(design, changes or {}, library=library, model=model, progress=progress, **options)
     solved = [tuple(solutions(curves, task.figure, task.value)) for task in tasks]
     gas, conductance = curves.gas, None
@@ -169,7 +169,7 @@ def driving_schedule(
 def _sealed(
     curves: ReachCurves, gas: SealedGas, task: DrivingTask, pressure: float, before_mL: float, conductance: float | None
 ) -> TaskGas:
-    """The gas at a driving pressure (MPa) that is among the states; ``before_mL`` is the gas injected already."""
+    """Gas of a task at a driving pressure (MPa) that is among the states; ``before_mL`` was injected already."""
     k = int(np.searchsorted(gas.pressure, pressure))
     values = curves.values(task.figure)
     near = slice(max(0, k - 1), k + 2)
@@ -201,7 +201,7 @@ _NO_LEAK = "no leak was measured; give the results of the coupon leak-cap or of 
 
 
 def driving_record(schedule: DrivingSchedule) -> DrivingRecord:
-    """Record of a whole driving schedule, in the units of its names."""
+    """A driving schedule as a record."""
     curves, rating, leak = schedule.curves, schedule.curves.evaluation.rating, schedule.leak
     record = DrivingRecord(
         design=curves.evaluation.scene.name,
@@ -223,7 +223,7 @@ def driving_record(schedule: DrivingSchedule) -> DrivingRecord:
 
 
 def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
-    """Least and greatest value of a figure and where, over all driving pressures and up to the rated pressure."""
+    """Least and greatest value of a figure with their pressures, over all driving pressures and up to the rated."""
     pressures, values = curves.pressures, curves.values(figure)
     if np.isnan(values).all():
         return None
@@ -237,7 +237,7 @@ def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
 
 
 def _ends(at_kPa: Array, values: Array) -> tuple[float, float, float, float]:
-    """The least value with its pressure, and the greatest value with its pressure."""
+    """Least value with its pressure, greatest value with its pressure."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     return float(values[low]), float(at_kPa[low]), float(values[high]), float(at_kPa[high])
 
