@@ -1,4 +1,4 @@
-"""Plan of a measurement: every run of a campaign, its steps, its expected readings, and what the rig cannot follow."""
+"""Plan of a measurement: runs of a campaign, their steps and expected readings, and limits of the rig they exceed."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -46,10 +46,10 @@ from pneutouch.workflows.simulate import campaign_toml
 from pneutouch.workflows.simulate_inputs import named_design
 
 FILL, PUSH, SETTLE = 30.0, 2.0, 20.0
-"""Seconds to fill before a leak run, to push one volume, and to let it settle and cool: our choice."""
+"""Seconds to fill before a leak run, to push one volume, and to let that settle and cool: our choice."""
 
 _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
-"""A rest with reset, in shares of it: our choice; the last share lets the pressure settle."""
+"""Actions of a rest with reset and their shares of it: our choice; the last share lets the pressure settle."""
 
 
 def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
@@ -72,7 +72,7 @@ def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[PlannedSt
 
 
 def leak_steps(pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
-    """Steps of one leak run: the line is filled, closed and left alone."""
+    """Steps of a leak run: the line is filled to the driving pressure, closed and left alone."""
     return [
         PlannedStep("set_pressure", pressure_kPa, "kPa", FILL),
         PlannedStep("record", rig.rate_Hz, "Hz", 0.0),
@@ -81,7 +81,7 @@ def leak_steps(pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
 
 
 def injection_steps(volume_mL: float) -> list[PlannedStep]:
-    """Steps of one injection run: ``volume_mL`` in five equal parts, each read after it has settled."""
+    """Steps of an injection run: ``volume_mL`` in five equal parts, each read after it has settled."""
     steps = [PlannedStep("vent", 0.0, "kPa", SETTLE)]
     for share in (0.2, 0.4, 0.6, 0.8, 1.0):
         steps += [
@@ -100,7 +100,7 @@ SATURATION = (0.0, 12.0)
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """A plan, and the campaign file to be filled, with the files that it needs."""
+    """A plan, the campaign file to fill in, and the files that this one needs, by name."""
 
     record: PlannedCampaign
     campaign: Campaign
@@ -108,17 +108,17 @@ class CampaignPlan:
 
     @property
     def name(self) -> str:
-        """Name of the folder."""
+        """Name of the output folder."""
         return self.record.name
 
     @property
     def sheet(self) -> str:
-        """Markdown for the laboratory."""
+        """The plan as Markdown for the laboratory."""
         return plan_sheet(self.record)
 
 
 def rig_of(file: Path | None) -> Rig:
-    """The rig of a TOML file with a [rig] table; without a file the paper's. Raises InputError."""
+    """Rig from the [rig] table of a TOML file; the paper's without a file. Raises InputError without the table."""
     if file is None:
         return Rig()
     content = read_toml(file)
@@ -130,7 +130,7 @@ def rig_of(file: Path | None) -> Rig:
 
 
 def paper_rig(scene: ResolvedDesign) -> Rig:
-    """The paper's rig, with the gauge that the design names in place of its own."""
+    """Rig of the paper, with range and rate of the gauge that the design names, if it names one."""
     if scene.gauge is None:
         return PAPER
     reading = reading_of(scene)
@@ -151,7 +151,7 @@ def make_plan(
     library: Library | None = None,
     out: Path | None = None,
 ) -> CampaignPlan:
-    """Plan the paper's tests for a design in each resin. Raises InputError, also where ``out`` cannot take the plan."""
+    """Plan the paper's tests for a design in each resin. Raises InputError, also if ``out`` cannot take the plan."""
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, library=library)
     named, copied = named_design(design, library)
@@ -204,7 +204,7 @@ def make_plan(
 
 
 def _campaign_run(run: PlannedRun) -> CampaignRun:
-    """A run of the plan in the campaign's file."""
+    """Entry of a planned run in the campaign file."""
     volumes_mL = [step.value for step in run.steps if step.action == "inject" and step.value is not None]
     return CampaignRun(
         file=run.file,
@@ -244,7 +244,7 @@ Tests = Mapping[RunKind, tuple[RunProtocol, tuple[float, ...]]]
 def plated_tests(subject: SimulatedResin, rated_kPa: float) -> Tests:
     """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run.
 
-    The design's own pressures are kept; one that the plan chooses is at most ``rated_kPa``.
+    The design's own pressures are kept; the one that the plan chooses for saturation is at most ``rated_kPa``.
     """
     driving_kPa = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
     top_kPa = min(SATURATION[-1], driving_kPa[-1], rated_kPa)
@@ -276,7 +276,7 @@ def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
 
 
 def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> PlannedResin:
-    """Readings expected of one resin: at every depth of every kind, after injected air, and the leak it may have."""
+    """Expected readings of one resin: at every depth of every kind of run, after injected air, and the leak allowed."""
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
     states = tuple(
         PlannedState(
@@ -302,7 +302,7 @@ def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
 def _runs(
     subject: SimulatedResin, sensor: str, tests: Tests, pressed_curves: PressCurves, rig: Rig, before: int
 ) -> list[PlannedRun]:
-    """Every run of one specimen in order: leak and dead volume first, relaxation last: it strains the wall longest."""
+    """Runs of one specimen in order: leak and injection first, relaxation, which strains the wall longest, last."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
     volume_mL = injection(pressed_curves, subject.rating, rig).sensor_volume_mL
     planned: list[tuple[RunKind, float, int, list[PlannedStep], tuple[ExpectedPoint, ...]]] = [

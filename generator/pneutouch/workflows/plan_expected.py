@@ -1,4 +1,4 @@
-"""Readings of a planned campaign if the prediction holds, and the places where the rig cannot follow."""
+"""Readings that a planned campaign gives if the prediction holds, and limits of rig and sensor that it exceeds."""
 
 from collections.abc import Mapping
 
@@ -14,24 +14,24 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
 RESOLVED = 3.0
-"""Resolutions of the force sensor below which a first step is not detected (IUPAC's limit of detection)."""
+"""Force in resolutions of the force sensor below which a first step is not detected (IUPAC's limit of detection)."""
 
 ROUND = tuple(ML * digit * 10.0**power for power in (-2, -1, 0, 1) for digit in (1, 2, 5))
 """Round volumes that a syringe can push, mm3."""
 
 MORE = 0.1 * ML
-"""Extra dead volume whose effect is shown as well, mm3: 20 mm of a 2.5 mm bore, our choice."""
+"""Additional dead volume whose effect is also stated, mm3: 20 mm of a 2.5 mm bore, our choice."""
 
 _OF_RATED, _OF_RANGE = 0.5, 0.8
-"""Pushed air may take the sensor to the first share of its rated pressure, and the line to the second share of the
-gauge's range: our choice, so that neither is strained by the test."""
+"""Shares of the rated pressure, for the sensor, and of the gauge's range, for the line, that pushed air may reach: our
+choice, so that neither is strained by the test."""
 
 _LEAK_SHARE = 0.01
-"""The leak may take this share of the first step's rise while one indentation lasts: our choice."""
+"""Share of the first step's rise that a leak may take during one indentation: our choice."""
 
 
 def points(curve: PressCurve, depths: tuple[float, ...]) -> tuple[ExpectedPoint, ...]:
-    """Expected force, pressure rise and cavity pressure at plate travels; None beyond the predicted range."""
+    """Expected force, pressure rise and cavity pressure at plate travels, mm; None beyond the predicted range."""
     known = [depth for depth in depths if curve.covers(depth)]
     force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
     driving_kPa = curve.driving / KPA
@@ -45,7 +45,7 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> tuple[ExpectedPoint,
 def curve_warnings(
     resin: str, rating: Rating, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
 ) -> list[PlanViolation]:
-    """Limits that the kinds of run at one driving pressure would exceed; ``tests`` are their protocols by kind."""
+    """Warnings on limits that runs at one driving pressure would exceed; ``tests`` are their protocols by kind."""
     driving_kPa = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
     expected = points(curve, depths)
@@ -101,7 +101,7 @@ def curve_warnings(
 
 
 def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
-    """Warning if the stage does not reach the deepest step from its clearance."""
+    """Warning if the stage's travel is too short for the deepest step and its clearance; else none."""
     need = max(depths) + CLEARANCE
     if need <= rig.travel_mm:
         return []
@@ -110,7 +110,7 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
 
 
 def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
-    """Raise InputError for a driving pressure of the design at which the sensor as designed meets a limit."""
+    """Raise InputError if the sensor as designed meets a limit at one of the design's driving pressures."""
     for k, pressure_kPa in enumerate(scene.design.pneumatics.driving_pressures_kPa):
         if rating.severity(pressure_kPa * KPA) == "error":
             raise InputError(
@@ -123,7 +123,7 @@ def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> No
 
 
 def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> PlannedInjection:
-    """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, None where unknown."""
+    """Pressures (kPa) after round volumes of room air, into closed line and unpressed sensor; None if unknown."""
     sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
     volumes = np.array(ROUND)
     bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)
@@ -160,6 +160,6 @@ def _rows(pressed: PressCurves, most: float) -> tuple[InjectedVolume, ...]:
 
 
 def leak_limit(rise_kPa: float, test: RunProtocol) -> float:
-    """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise while that indentation lasts."""
+    """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise (kPa) during its indentation."""
     seconds = test.hold + 2 * (test.depths[0] + CLEARANCE) / test.speed
     return 60.0 * _LEAK_SHARE * rise_kPa / seconds

@@ -1,7 +1,7 @@
-"""A step or a sine of force or of travel through a sensor: wall, gas, line and gauge.
+"""Response of a sensor, with wall, gas, line and gauge, to a step or a sine of force or of travel.
 
 The slow reading is that of the predicted curve. Wall, gas and line act on it as a linear system about half of the load,
-with the compliance that the wall has there: found from a second press of the same model with more gas behind it.
+with the compliance that the wall has there, found from a second press of the same model with more gas behind it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _FREQUENCIES = (1e-3, 1e4)
 """Least and greatest frequency of a sine, Hz."""
 
 CYCLES = 10.0
-"""Cycles of a sine, where no duration is given."""
+"""Cycles of a sine if no duration is given."""
 
 STEP_SECONDS = 1.0
 """Length of a step's record if no duration is given: our choice, many times the time that a line needs."""
@@ -44,7 +44,7 @@ class Load:
     """Load on the sensor over time, up to ``peak`` (N, or mm of travel with ``travel``; None: half of the range).
 
     ``frequency`` in Hz of a sine that goes from no load to the peak and back; None: a step at a tenth of the record.
-    ``duration`` in s; None: 1 s, or ten cycles.
+    ``duration`` in s; None: 1 s for a step, ten cycles for a sine.
     """
 
     peak: float | None = None
@@ -75,7 +75,7 @@ class Load:
         return STEP_SECONDS if self.frequency is None else CYCLES / self.frequency
 
     def over(self, time: Array) -> Array:
-        """The load over its peak at even times (s), (n,)."""
+        """Load over its peak at evenly spaced times (s), (n,)."""
         if self.frequency is not None:
             return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * self.frequency * time))
         at = int(BEFORE * time.size)
@@ -96,7 +96,7 @@ def load_size(text: str, key: str) -> tuple[float, bool]:
 
 
 def frequency_Hz(text: str, key: str = "sine") -> float:
-    """A frequency from text such as 5Hz or 5. Raises InputError naming ``key``."""
+    """Frequency from text such as 5Hz or 5. Raises InputError that names ``key``."""
     try:
         return plain_number(text.strip().removesuffix("Hz").strip())
     except ValueError:
@@ -116,7 +116,7 @@ _MORE_GAS = 0.1
 """Additional gas of the second press, as a share of all gas."""
 
 _SMALL_LOAD = 0.02
-"""Share of the range below which the wall's compliance is that without contact."""
+"""Share of the range below which half of the load counts as no contact for the wall's compliance."""
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,8 @@ class GaugeSamples:
 
 @dataclass(frozen=True)
 class StateSignal:
-    """One state's signal, arrays of one length: load (N or mm), pressure rise (MPa) of a slow press, in the cavity and
-    at the gauge; ``samples`` None if the gauge's rate is not known."""
+    """One state's signal, arrays (n,): load (N or mm); pressure rise (MPa) of a slow press, in the cavity and at the
+    gauge. ``samples`` is None without a gauge whose rate is known."""
 
     driving_pressure: float
     source: str | None
@@ -162,7 +162,7 @@ class RespondRun:
 
 
 def run_respond(evaluation: Evaluation, load: Load, seed: int = 0) -> RespondRun:
-    """Simulate a load on every state. Raises InputError for one beyond a state's range, or too long a record."""
+    """Simulate a load on every state. Raises InputError for a load beyond a range, or a bad length of the record."""
     prediction = evaluation.prediction
     curves = [_curve(state, load) for state in prediction.states]
     peak = load.peak
@@ -187,7 +187,7 @@ def run_respond(evaluation: Evaluation, load: Load, seed: int = 0) -> RespondRun
 
 
 def _curve(state: SensorState, load: Load) -> tuple[Array, Array]:
-    """Load and pressure rise of the slow press, as far as both rise within the state's range."""
+    """Load and rise of the slow press, while both rise in the range. Raises InputError for fewer than three points."""
     x = state.indentation if load.travel else state.force
     kept = state.indentation <= state.range_end * (1.0 + 1e-9)
     rising = np.append(True, (np.diff(x) > 0.0) & kept[1:])
@@ -200,7 +200,7 @@ def _curve(state: SensorState, load: Load) -> tuple[Array, Array]:
 
 
 def _compliances(evaluation: Evaluation, load: Load, peak: float) -> list[float]:
-    """The wall's compliance of each state at half of the load, mm3/MPa; without contact by the membrane model."""
+    """Compliance of each state's wall at half of the load, mm3/MPa; the free one for a membrane or small load."""
     prediction = evaluation.prediction
     if prediction.model == "membrane":
         return [free_compliance(prediction, state) for state in prediction.states]
@@ -224,7 +224,7 @@ def _compliances(evaluation: Evaluation, load: Load, peak: float) -> list[float]
 def _compliance(
     one: tuple[SensorState, float], two: tuple[SensorState, float], ambient: float, load: Load, peak: float
 ) -> float | None:
-    """Compliance: ratio of the changes of volume (by Boyle's law) and pressure at a load, from two dead volumes."""
+    """Change of volume (Boyle) over change of pressure at a load, from two dead volumes; None if not found."""
     ends, places = [], []
     for state, dead in (one, two):
         x, rise = _curve(state, load)
@@ -274,8 +274,8 @@ def _signal(
 
 
 def _sampled(evaluation: Evaluation, driving: float, time: Array, rise: Array, seed: int) -> GaugeSamples | None:
-    """Readings of the design's gauge from a signal: with its rate, its noise and its steps as far as they are known;
-    None without a gauge."""
+    """Readings of the design's gauge, with its rate, and with its noise and steps if they are known; None without a
+    gauge whose rate is known."""
     gauge = evaluation.scene.gauge
     if gauge is None or gauge.rate_Hz is None:
         return None

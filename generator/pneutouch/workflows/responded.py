@@ -1,4 +1,4 @@
-"""A simulated signal as the record that ``respond`` prints, as files and as a figure."""
+"""A simulated signal as the record that ``respond`` prints, and as files with a chart."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
 _DIGITS = 6
 
 _MOST_ROWS = 20000
-"""Rows of a signal's CSV file: of a longer signal every second, third ... sample is written."""
+"""Most rows of a signal's CSV file: of a longer signal every second, third ... sample is written."""
 
 _LOWEST = 0.1
 """Lowest frequency in the chart of the gain, Hz."""
@@ -35,7 +35,7 @@ CHAIN = (
 
 
 def responded(run: RespondRun) -> LoadResponse:
-    """All results of a simulated signal."""
+    """Record of a simulated signal."""
     scene, load, peak = run.evaluation.scene, run.load, run.signals[0].peak
     record = LoadResponse(
         design=scene.name,
@@ -92,7 +92,7 @@ def _state(load: Load, number: int, signal: StateSignal) -> StateResponse:
 
 
 def write_respond(run: RespondRun, record: LoadResponse, out: Path) -> Path:
-    """Write signals, samples, record, figure and manifest into ``out/<design>-response/``; returns that folder."""
+    """Write signals, samples, record, chart and manifest into ``out/<design>-response/``; return that folder."""
     name = f"{run.evaluation.scene.name}-response"
     folder = out / name
     check_writable(folder)
@@ -127,7 +127,7 @@ def _csv(columns: dict[str, Array]) -> bytes:
 
 
 def _chart(run: RespondRun) -> str:
-    """The signal of the highest driving pressure, only around the step if there is one, and the gain of every state."""
+    """Chart of the last signal, for a step only the time around it, and of the gain of every state; SVG."""
     shown = run.signals[-1]
     part = slice(None)
     if run.load.frequency is None:

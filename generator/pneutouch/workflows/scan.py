@@ -1,4 +1,4 @@
-"""A specimen scanned by a sensor at each driving pressure, and the domes that best distinguish two patterns."""
+"""Scan of a specimen by a sensor at each driving pressure, and the domes that best distinguish two patterns."""
 
 import re
 from dataclasses import dataclass, replace
@@ -38,12 +38,12 @@ from pneutouch.wording import rounded, tenths_below
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
 
 KEPT = 20.0
-"""Frequency up to which CSV files keep signals, Hz, or twice the highest pattern's; sampled at five times that."""
+"""Frequency up to which CSV files keep signals, Hz, or twice the highest pattern's; they have five times that rate."""
 
 
 @dataclass(frozen=True)
 class AnalysedSignal:
-    """One signal, simulated or measured, with its detections; touch, substrate and scan of a simulated one."""
+    """A signal, simulated or measured, with its detections; touch, substrate and scan are None for a measured one."""
 
     label: str
     signal: Signal
@@ -55,7 +55,7 @@ class AnalysedSignal:
 
 @dataclass(frozen=True)
 class ScanRun:
-    """A scan with its inputs and signals; ``frequencies`` of the patterns, Hz, by name; ``noise`` in MPa rms."""
+    """A scan with its inputs and signals; ``frequencies`` of the patterns in Hz, by name; ``noise`` in MPa rms."""
 
     specimen: ResolvedSpecimen
     design: ResolvedDesign
@@ -75,7 +75,7 @@ class ScanRun:
 
     @property
     def kept(self) -> float:
-        """Highest frequency that the signals are written for, Hz."""
+        """Highest frequency that the written signals keep, Hz."""
         return max(KEPT, 2 * max(self.frequencies.values(), default=0.0))
 
 
@@ -86,9 +86,9 @@ def run_scan(
     changes: Changes | None = None,
     library: Library | None = None,
 ) -> ScanRun:
-    """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
+    """Scan a specimen with a sensor, both given by name or path; ``changes`` override fields of the design.
 
-    Raises InputError if that is impossible: see `texture.sliding`, `texture.detect`.
+    Raises InputError for what cannot be scanned; see `texture.sliding` and `texture.detect`.
     """
     library = library or Library.default()
     context, scene, sensor = _load_both(specimen, design, changes, library)
@@ -118,7 +118,7 @@ def run_scan(
 def _load_both(
     specimen: str, design: str | DesignSource, changes: Changes | None, library: Library, scanned: bool = True
 ) -> tuple[ResolvedSpecimen, ResolvedDesign, Sensor]:
-    """A specimen, checked as for printing if ``scanned``, and a sensor. Raises InputError, also for two specimens."""
+    """Specimen, design and sensor; ``scanned``: check bars and drawing. Raises InputError, also for two specimens."""
     context = load_specimen(specimen, None, library)
     if isinstance(design, str) and library.specimen_file(design) is not None:
         raise InputError(
@@ -138,7 +138,7 @@ def _load_both(
 
 
 def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
-    """The specimen's rows of bars. Raises InputError for layers of another kind: the scan model does not cover them."""
+    """Rows of bars of the specimen. Raises InputError for a layer of another kind, or two rows of one name."""
     rows = []
     for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
@@ -162,7 +162,7 @@ def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
 
 
 def _matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
-    """The block's matrix. Raises InputError for one without a shear modulus."""
+    """Matrix of the specimen's block. Raises InputError for a matrix without a shear modulus."""
     modulus, poisson = context.matrix.shear_modulus_MPa, context.matrix.poisson_ratio
     if modulus is None or poisson is None:
         raise InputError(
@@ -176,7 +176,7 @@ def _matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
 
 
 def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
-    """The specimen at another speed; the bars stay where the file's own speed put them."""
+    """The specimen scanned at another speed; the bars stay where the file's speed put them."""
     given = context.specimen.scan.speed_mm_per_s
     layers = [
         layer.model_copy(update={"pitch_mm": layer.pitch(given), "target_frequency_Hz": None})
@@ -189,14 +189,14 @@ def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
 
 
 def _noise_of(options: ScanOptions, gauge: float | None = None) -> float:
-    """Noise of a sample, MPa rms: as stated, else the ``gauge``'s, else a step of the recorder."""
+    """Noise of a sample, MPa rms: as stated, else the ``gauge``'s, else `NOISE`."""
     if options.noise_kPa is not None:
         return options.noise_kPa * KPA
     return NOISE if gauge is None else gauge
 
 
 def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: dict[str, float]) -> None:
-    """Refuse a path too short to resolve a pattern's frequency, in terms of the specimen."""
+    """Raise InputError, with the block length needed, for a path too short to resolve a pattern's frequency."""
     lasts = (scan_path.end - scan_path.start) / scan_path.speed
     for name, frequency in frequencies.items():
         needed = least_duration(frequency)
@@ -211,7 +211,7 @@ def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: d
 
 
 def _detected(signal: Signal, frequencies: dict[str, float], where: str) -> tuple[Detection, ...]:
-    """One detection for each pattern; patterns of one pitch are one line in a spectrum."""
+    """One detection for each pattern, shared by patterns of one frequency; none for a constant signal."""
     sought = sorted(set(frequencies.values()))
     if np.ptp(signal.pressure) == 0:
         return ()
@@ -242,7 +242,7 @@ _SHOWN, _DIGITS = 8, 4
 
 @dataclass(frozen=True)
 class DomeCandidates:
-    """Candidate domes, (n,) each: resin by number in ``names``, sizes in mm, one row for each driving pressure."""
+    """Candidate domes, (n,) each, a row a driving pressure: index in ``names``, sizes (mm), number of the dome."""
 
     names: tuple[str, ...]
     resin: Array
@@ -253,7 +253,7 @@ class DomeCandidates:
 
 
 def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
-    """Two patterns out of ``PITCH1@DEPTH1,PITCH2@DEPTH2`` in mm. Raises InputError."""
+    """Two patterns from a text ``PITCH1@DEPTH1,PITCH2@DEPTH2`` in mm. Raises InputError for another text."""
     number = r"\s*(\d+(?:\.\d+)?)\s*"
     match = re.fullmatch(f"{number}@{number},{number}@{number}", text)
     if match is None:
@@ -276,7 +276,7 @@ def separating(
     changes: Changes | None = None,
     library: Library | None = None,
 ) -> SeparationRecord:
-    """The domes that best distinguish two patterns; the specimen gives matrix and speed, the design the rest."""
+    """Domes that best distinguish two patterns (``text``); the specimen gives matrix and speed, the design all else."""
     library = library or Library.default()
     patterns = parse_patterns(text)
     context, scene, sensor = _load_both(specimen, design, changes, library, scanned=False)
@@ -314,10 +314,10 @@ def _dome(domes: DomeCandidates, separation: Separation, k: int) -> SeparatingDo
 
 
 def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:
-    """A grid over the resins that the design's printer runs and the atlas covers, wall ratio, radius and pressure.
+    """Candidates on a grid of wall ratio, radius and pressure, for resins that the printer runs and the atlas covers.
 
     Sizes are in hundredths of a millimetre and pressures in tenths of a kPa, as they are shown; no pressure is above
-    the rated pressure of its dome.
+    its dome's rated one. Raises InputError without such a resin.
     """
     check_shape(scene)
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
@@ -353,7 +353,7 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
 
 
 def _batch(resin: Array, radius: Array, wall: Array, materials: list[Material], sensor: Sensor) -> SensorBatch:
-    """Unpressurised sensors of domes, (n,); everything else is the design's."""
+    """Sensors with these domes, (n,), at a driving pressure of 0; all else is the design's."""
     walls = [material_sensor(material).wall for material in materials]
     number, ones = resin.astype(int), np.ones(radius.size)
     return SensorBatch(

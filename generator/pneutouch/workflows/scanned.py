@@ -40,7 +40,7 @@ _DIGITS = 7
 
 
 def scanned(run: ScanRun) -> ScanRecord:
-    """All results of a scan."""
+    """Record of a scan."""
     record = ScanRecord(
         specimen=run.specimen.name,
         design=run.design.name,
@@ -61,7 +61,7 @@ def scanned(run: ScanRun) -> ScanRecord:
 
 
 def _inputs(run: ScanRun) -> Mapping[str, object]:
-    """Everything that the result depends on, as data; measured signals by their file names."""
+    """All that the result depends on, as data; measured signals only by file name."""
     design = run.design
     options = run.options
     return {
@@ -80,7 +80,7 @@ def _inputs(run: ScanRun) -> Mapping[str, object]:
 
 
 def spectra(run: ScanRun) -> str:
-    """Signals, less their mean and decimated, and scalograms side by side; SVG."""
+    """Chart of the signals, decimated and without their mean, beside their scalograms; SVG."""
     frequencies = sorted(set(run.frequencies.values()))
     low, high = frequencies[0] / 2.0, frequencies[-1] * 2.0
     states = []
@@ -144,7 +144,7 @@ def _signal(run: ScanRun, number: int, seen: AnalysedSignal) -> SignalRecord:
 
 
 def _sought(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> SoughtPattern:
-    """One pattern in one signal. Patterns of one pitch share one detection: a spectrum does not distinguish them."""
+    """One pattern in one signal. Patterns of one frequency share a detection: a spectrum does not distinguish them."""
     sought = SoughtPattern(row.name, run.frequencies[row.name], detection is not None and detection.detected)
     if seen.touch is not None and seen.substrate is not None:
         swing = pressure_amplitude(seen.touch, seen.substrate, row, run.path.control)
@@ -173,7 +173,7 @@ def _sought(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detectio
 
 
 def _notes(bars: Sequence[BarRow], radius: float) -> tuple[str, ...]:
-    """Notes on the patch: its effect on the patterns' pitches."""
+    """Note on pitches that the patch averages over; none if every pitch is large."""
     near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
     if not near:
         return ()
@@ -185,7 +185,7 @@ def _notes(bars: Sequence[BarRow], radius: float) -> tuple[str, ...]:
 
 
 def write_scan(run: ScanRun, record: ScanRecord, out: Path) -> Path:
-    """Write signals, record, figure and manifest into ``out/<specimen>-<design>-scan/``."""
+    """Write signals, record, chart and manifest into ``out/<specimen>-<design>-scan/``; return that folder."""
     folder = out / run.name
     check_writable(folder)
     files = {"scan.json": json_bytes(versioned("scan", plain(record))), "scan.svg": spectra(run).encode()}
@@ -196,7 +196,7 @@ def write_scan(run: ScanRun, record: ScanRecord, out: Path) -> Path:
 
 
 def signal_csv(seen: AnalysedSignal, bars: Sequence[BarRow], highest: float) -> bytes:
-    """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
+    """CSV of a signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and bars passed."""
     kept = decimated(seen.signal, highest)
     columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}
     if seen.scan is not None:

@@ -1,1 +1,1 @@
-"""Selection of designs for a target."""
+"""Selection of designs that meet a target."""

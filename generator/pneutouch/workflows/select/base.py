@@ -1,7 +1,6 @@
-"""The base of a selection: the design that gives everything that the target does not.
+"""Base of a selection: the design that gives everything that the target does not.
 
-Two base resins to mix: resolved, checked against the printer, and offered to the search as resins.
-"""
+Also the pair of base resins to mix: resolved, checked against the printer, and offered to the search as resins."""
 
 from __future__ import annotations
 
@@ -32,12 +31,12 @@ from pneutouch.spec.read import Changes, parse_changes, validate
 from pneutouch.spec.target import Shelf, Target
 
 USUAL = "TangoPlus+VeroClear"
-"""The pair a grade is made of where none is named: the paper's resins."""
+"""Pair of resins for a grade if none is named: the paper's."""
 
 
 @dataclass(frozen=True)
 class ResinPair:
-    """A soft and a stiff resin with their mixing curve. ``where`` names the file in messages."""
+    """A soft and a stiff resin with their mixing curve; ``where`` names the target's file in messages."""
 
     soft: str
     stiff: str
@@ -51,7 +50,7 @@ class ResinPair:
         return f"{self.soft}+{self.stiff}"
 
     def grade(self, *fractions: float) -> Grade:
-        """A constant mix of one fraction, or a grade of fractions at even knots from the pole to the rim."""
+        """Constant mix if one fraction is given, else a grade of fractions at even knots from the pole to the rim."""
         value = fractions[0] if len(fractions) == 1 else list(fractions)
         return Grade.model_validate({"from": self.soft, "to": self.stiff, "fraction": value})
 
@@ -70,10 +69,9 @@ class ResinPair:
 
 
 def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
-    """The pair of ``SOFT+STIFF``. Raises InputError if a name is unknown or the printer does not hold both.
+    """Pair of resins from ``SOFT+STIFF``. Raises InputError if a name is unknown or the printer cannot mix the two.
 
-    ``named`` is True if the user named the pair.
-    """
+    ``named`` is True if the user named the pair."""
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
     if printer.mode_for(pair.material(pair.grade(0.5 * pair.law.wall_top))) is None:
@@ -89,7 +87,7 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
 
 
 def mix_resins(pair: ResinPair, ambient_pressure: float) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
-    """Mixes of a pair that the atlas covers, and why the others are left out."""
+    """Mixes of a pair that the atlas covers, and by name the reason why each other is left out."""
     resins, out = [], {}
     for fraction in levels(pair.law):
         resin = pair.resin(round(float(fraction), 4))
@@ -107,19 +105,18 @@ _SEARCHED = {
     "membrane.material": "given.materials (`material`) or given.mix (`mix`)",
     "pneumatics.driving_pressures_kPa": "target.driving_pressure_kPa (`at`)",
 }
-"""Fields of a design that the search finds, and the options that settle them instead."""
+"""Fields of a design that the search finds, and the options that fix them instead."""
 
 _FINGER = "connector.finger_diameter_mm"
 
 _WALL_SHARE = 0.15
-"""Wall over radius of the dome that a base is drawn with where only the wall is given."""
+"""Wall over radius in the drawing of a base if the given radius or wall does not suit the base's other."""
 
 
 def setting_changes(target: Target, library: Library) -> Changes:
     """Changes of a target to its base design, by ``table.key``.
 
-    Raises InputError for what the search finds itself.
-    """
+    Raises InputError for a field that the search finds."""
     setting = target.setting
     changes = parse_changes(setting.assignments)
     for key, value in changes.items():
@@ -137,9 +134,9 @@ def setting_changes(target: Target, library: Library) -> Changes:
 
 
 def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
-    """The scene that gives everything the target does not; its own dome is replaced by the candidates'.
+    """Resolved design that gives everything the target does not; candidates replace its dome.
 
-    Raises InputError if it names something unknown; ``where`` names the target's file.
+    Raises InputError if it names something unknown; ``where`` is the target's file, for messages.
     """
     with named_by_target(target, where):
         return _base_scene(target, where, library)
@@ -147,7 +144,7 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 
 @contextmanager
 def named_by_target(target: Target, where: str) -> Iterator[None]:
-    """Name the key of the target, and its file ``where``, in an error on the base that it names or on its finger."""
+    """Context in which errors on the target's base or its finger name the target's key and its file ``where``."""
     try:
         yield
     except PneutouchError as error:
@@ -183,7 +180,7 @@ def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 
 
 def check_central(scene: ResolvedDesign) -> None:
-    """Raise InputError for contact off the axis, with which no search is made."""
+    """Raise InputError for contact off the axis, which the search does not cover."""
     off_axis = scene.design.contact.off_axis
     if not off_axis:
         return
@@ -198,7 +195,7 @@ def check_central(scene: ResolvedDesign) -> None:
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
-    """The pair to mix: the one named, the usual one for a grade; None if resins are to be chosen from."""
+    """Pair to mix: the one named, or the usual one for a grade; None if single resins are searched."""
     given = target.given
     if given.mix is None and not given.graded:
         return None
@@ -206,18 +203,19 @@ def requested_pair(target: Target, where: str, printer: Printer, library: Librar
 
 
 def prints(scene: ResolvedDesign, material: Any) -> bool:
-    """True if the membrane's printer runs a resin, together with the connector's if both grow in one print."""
+    """True if the membrane's printer runs a resin, together with the connector's if both are one piece."""
     with_it = (scene.connector_material,) if isinstance(scene.seat, OnePiece) else ()
     return scene.printer.mode_for(material, *with_it) is not None
 
 
 def with_connector(scene: ResolvedDesign) -> str:
-    """Addition to "cannot run it" for a resin that is printed together with the connector."""
+    """Addition to "cannot run it" for a resin that is printed in one piece with the connector; else empty."""
     return f" with {scene.connector_material.label}" if isinstance(scene.seat, OnePiece) else ""
 
 
 def _source(target: Target, library: Library) -> DesignSource:
-    """The base without its calibration and accepted warnings, which hold only for its own membrane."""
+    """The base without calibration and accepted warnings, which hold only for its own membrane; the default without a
+    base."""
     if target.setting.base is None:
         return DEFAULT
     try:
@@ -231,12 +229,13 @@ def _source(target: Target, library: Library) -> DesignSource:
 
 
 def settled_base(target: Target, changes: Changes, library: Library) -> DesignFile:
-    """The base design with its changes, before its names are resolved."""
+    """Base design with the changes, before its names are resolved."""
     return _source(target, library).changed(changes)
 
 
 def _on_finger(finger_mm: float, target: Target, changes: Changes, library: Library) -> dict[str, str | float]:
-    """The mount for a finger: the base's where it is a sleeve, else the sleeve made for the nearest finger."""
+    """Changes for a finger: its diameter, and the base's mount if that is a sleeve, else the one made for the nearest
+    finger."""
     sleeves = {
         name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
     }
@@ -252,7 +251,8 @@ def _on_finger(finger_mm: float, target: Target, changes: Changes, library: Libr
 
 
 def _some_resin(target: Target, where: str, changes: Changes, library: Library) -> str:
-    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
+    """A resin to draw the base with: the first of those allowed that its printer runs. Raises InputError if it runs
+    none."""
     profile = settled_base(target, changes, library).print.profile
     key = "setting.profile" if target.setting.profile is not None else "print.profile"
     printer: Printer = library.load("printers", profile, file=where, key=key)
@@ -275,7 +275,7 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
 
 
 def read_shelf(path: Path) -> Shelf:
-    """The table [have] of a target, from a file with its keys. Raises InputError."""
+    """Table [have] of a target, from a file with the keys of that table. Raises InputError for an unknown name."""
     content = read_given(path, 'give a file with lists such as materials = ["TangoPlus"] and printers')
     shelf = validate(Shelf, content, str(path))
     _check_known(shelf, Library.default(), str(path), "")
@@ -283,7 +283,7 @@ def read_shelf(path: Path) -> Shelf:
 
 
 def _check_known(shelf: Shelf, library: Library, where: str, prefix: str) -> None:
-    """Raise InputError for an unknown name on a shelf, or if no resin is an elastomer; keys begin with ``prefix``."""
+    """Raise InputError for an unknown name on a shelf, or resins without an elastomer; keys begin with ``prefix``."""
     for kind in type(shelf).model_fields:
         parts = [library.load(kind, name, file=where, key=f"{prefix}{kind}") for name in getattr(shelf, kind) or ()]
         if kind == "materials" and parts and all(part.kind != "elastomer" for part in parts):
@@ -291,7 +291,7 @@ def _check_known(shelf: Shelf, library: Library, where: str, prefix: str) -> Non
 
 
 def _check_shelf(target: Target, profile: str, where: str, library: Library) -> None:
-    """Raise InputError for an unknown name on the shelf, and for a printer of the membrane that is not there."""
+    """Raise InputError for an unknown name on the shelf, or if the membrane's printer ``profile`` is not on it."""
     _check_known(target.have, library, where, "have.")
     if not target.have.holds("printers", profile):
         raise InputError(
@@ -302,7 +302,7 @@ def _check_shelf(target: Target, profile: str, where: str, library: Library) -> 
 
 
 def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:
-    """Error for a profile that runs none of the materials named, or no elastomer at all."""
+    """Error for a printer that runs none of the materials ``named``, or no elastomer at all if none is named."""
     for name, material in named.items():
         if casting_missing(printer, material):
             return uncast(printer, material, str(library.paths("materials")[name]))
@@ -315,4 +315,4 @@ def _runs_none(printer: Printer, named: dict[str, Material], where: str, library
 
 
 ANY = "any"
-"""Stands for every gauge of the library."""
+"""Name that stands for every gauge of the library."""
