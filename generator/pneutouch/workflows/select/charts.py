@@ -1,4 +1,4 @@
-"""The charts of a selection: the cost of its target, and the range over which the chosen design can be tuned."""
+"""Charts of a selection: the trade-off at its target, and the range over which the chosen design can be tuned."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -24,21 +24,20 @@ _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""
 
 _SOLVED, _LEAST = 9, 2
-"""Number of driving pressures of a tuning curve by the solid, and how many of them must have figures."""
+"""Number of driving pressures of a tuning curve by the solid, and least number of them with figures."""
 
 _DESIGNS = 5
-"""Most designs marked on the trade-off, and most resins compared with the chosen one on the tuning chart."""
+"""Greatest number of designs on the trade-off, and of resins on the tuning chart."""
 
 
 def write_charts(
     selection: SelectionRun, folder: Path, chosen: Candidate | None = None, library: Library | None = None
 ) -> list[Path]:
-    """Write ``trade-off.svg``, and ``tuning.svg`` of a chosen design, else the best, where there is one.
+    """Write ``trade-off.svg``, and ``tuning.svg`` for ``chosen`` (None: the best design), if there is a design.
 
-    Returns what was written.
+    Returns the paths of the files.
 
-    Raises InputError if the folder cannot be written.
-    """
+    Raises InputError if the folder cannot be written."""
     library = library or Library.default()
     charts = {"trade-off.svg": drawn_svg(Chart((tradeoff_panel(tradeoff(selection, library)),), _SIZE))}
     chart = tuning(selection, library, chosen)
@@ -50,10 +49,10 @@ def write_charts(
 
 
 def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOff:
-    """Fronts at the target's driving pressure, else the best design's; the target's window and the designs in it.
+    """Trade-off at the target's driving pressure, else at the best design's: fronts, the target's window, designs in
+    it.
 
-    Under a contact that the atlas does not cover the fronts are the atlas's, corrected by the solid along them.
-    """
+    Under a contact that the atlas does not cover the fronts are the atlas's, corrected by the solid along them."""
     problem, designs = selection.problem, _best(selection)
     pressure = problem.driving_pressure
     if pressure is None:
@@ -81,7 +80,8 @@ def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOf
 def _fronts(
     selection: SelectionRun, problem: SelectionProblem, library: Library
 ) -> tuple[list[TradeOffFront], tuple[float, float] | None, str]:
-    """Fronts, their errors and notes: under the base's contact if the solid answers it."""
+    """Fronts, their median and greatest error (None by the atlas), and a caption; corrected where the solid
+    searched."""
     if selection.by_solid is None:
         return front(problem), None, ""
     solver = CandidateSolver(selection.base, selection.assignments, library)
@@ -92,7 +92,7 @@ def _fronts(
 
 
 def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
-    """Sensitivity over driving pressure, to the rated one, of the chosen (else best) design, and of other resins."""
+    """Sensitivity over driving pressure, to the rated one, of ``chosen`` (None: the best) and other resins; or None."""
     designs = _best(selection)
     if not designs:
         return None
@@ -120,7 +120,7 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
 
 
 def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate) -> TuningChart | None:
-    """The curve of a design under a contact that the atlas does not cover, with its interval where that is known."""
+    """Curve of a design under a contact that the atlas does not cover, its interval if known; or None."""
     solve = CandidateSolver(selection.base, selection.assignments, library)
     pressures = np.unique([*np.linspace(0.0, chosen.rated, _SOLVED), float(chosen.pool.pressure[0])])
     states = [state for state in solve(chosen.resin, chosen.pool, pressures.tolist()).states if state.figures]
@@ -135,12 +135,12 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
 
 
 def _working(chosen: Candidate) -> dict[float, float]:
-    """The driving pressure that a design is for and its sensitivity there, kPa to kPa/N."""
+    """Driving pressure (kPa) that a design is for, and its sensitivity there (kPa/N), as a dictionary."""
     return {float(chosen.pool.pressure[0]) / KPA: chosen.pool.figures.sensitivity}
 
 
 def _best(selection: SelectionRun) -> list[Candidate]:
-    """The best design of each resin, best resin first."""
+    """Best design of each resin, the best resin first, `_DESIGNS` at most."""
     first: dict[str, Candidate] = {}
     for choice in selection.answer.designs:
         first.setdefault(choice.resin.name, choice)

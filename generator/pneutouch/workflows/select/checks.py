@@ -1,10 +1,8 @@
-"""The connector around a candidate's dome: the space for its parts, how wide the whole sensor is, its dead volume.
+"""Parts of a selection around the search: its candidates' connectors, solutions by the solid, and uncertainty.
 
-Check of a design that was found, and the design file that it becomes.
+Connector: the space for its parts around a dome, the diameter of the whole sensor, and the dead volume.
 
-Selection under a contact that the atlas does not cover: each candidate's own design, answered by the solid.
-
-The uncertainty of the sensitivity of candidates, as the ranking needs it.
+Also the design file that a candidate becomes, and what ``check`` says of it.
 """
 
 from __future__ import annotations
@@ -61,7 +59,7 @@ _WALL_SHARE = 0.15
 
 
 def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFit]:
-    """Function that fits a scene's connector around domes of inner radius (n,) and wall (n,), mm."""
+    """Function that gives the fit of a scene's connector around domes of inner radius (n,) and wall (n,), mm."""
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
 
     def fit(radius: Array, wall: Array) -> ConnectorFit:
@@ -76,7 +74,7 @@ def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFi
 
 
 def base_sensor(scene: ResolvedDesign) -> Sensor:
-    """Sensor of a base; with a dome of another size if the connector has no space for the base's own.
+    """Sensor of a base; with a dome of another size if the connector has no space for the base's own dome.
 
     Raises InputError if no size has space.
     """
@@ -90,7 +88,7 @@ def base_sensor(scene: ResolvedDesign) -> Sensor:
 
 
 def dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
-    """Function of the inner radius that gives the dead volume (mm3): stated, or interpolated between drawn radii."""
+    """Function from inner radii (n,), mm, to dead volumes, mm3: as stated, or interpolated between drawn connectors."""
     if scene.design.pneumatics.dead_volume_mL is not None:
         return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
     drawn = [(radius, assembly.dead_volume) for radius, assembly in _sizes(scene) if assembly is not None]
@@ -101,8 +99,7 @@ def dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Arra
 
 
 def base_around(scene: ResolvedDesign, radius: float, wall: float) -> RigidBase | None:
-    """Base that the wall of a dome of inner radius and wall (mm) can lie down on: the scene's connector as drawn for
-    it.
+    """Base that the wall of a dome (inner radius and wall in mm) can lie down on: the connector as drawn around it.
 
     None if the wall passes through; a plane where the connector cannot be drawn.
     """
@@ -111,13 +108,13 @@ def base_around(scene: ResolvedDesign, radius: float, wall: float) -> RigidBase 
 
 
 def _sizes(scene: ResolvedDesign) -> Iterator[tuple[float, Assembly | None]]:
-    """The scene with domes of several radii (mm), smallest first."""
+    """Radii (mm), the smallest first, with the scene drawn around a dome of each; None if it cannot be drawn."""
     for radius in _RADII.tolist():
         yield radius, _resized(scene, radius, _WALL_SHARE * radius)
 
 
 def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | None:
-    """The scene with another dome (mm), or None if its connector cannot be drawn."""
+    """The scene drawn around another dome (mm); None if it cannot be drawn."""
     sizes = {"inner_radius_mm": radius, "wall_thickness_mm": wall}
     membrane = scene.design.membrane.model_copy(update=sizes)
     try:
@@ -128,7 +125,7 @@ def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | No
 
 @dataclass(frozen=True)
 class RejectedDesign:
-    """A design that ``check`` rejects. ``rule``: the broken one; None if it cannot be drawn or predicted."""
+    """A design that ``check`` rejects: ``rule`` is the broken one, None if it cannot be drawn or predicted."""
 
     choice: Candidate
     rule: str | None
@@ -136,9 +133,9 @@ class RejectedDesign:
 
 
 class Judgement(NamedTuple):
-    """Judgement of ``check`` on a design.
+    """Result of ``check`` on a design.
 
-    reason: the first broken rule (None if the design cannot be drawn or predicted) and why; None if it passes.
+    reason: the first broken rule (None if the design cannot be drawn or predicted) and why; None if the design passes.
     evaluation: the design as the solid predicts it; None if only the print rules were applied.
     """
 
@@ -164,14 +161,14 @@ def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgeme
 
 
 def source_of(base: ResolvedDesign, assignments: list[str], name: str = "selected") -> DesignSource:
-    """The design that assignments make of a base, before it is written."""
+    """Design that results from a base by assignments, before it is written."""
     return DesignSource(name, assigned(base.design, assignments, name), base.where)
 
 
 def write_assigned(
     design: DesignFile, assignments: list[str], name: str, folder: Path, *, overwrite: bool = False
 ) -> Path:
-    """Save a base with assignments as ``folder/name.toml``; replace a file only if ``overwrite``."""
+    """Write a base with assignments as ``folder/name.toml``; an existing file is replaced only with ``overwrite``."""
     chosen = validate(DesignFile, assigned(design, assignments, name), name)
     note = "Every key may be left out; it then takes its default."
     return write_design(
@@ -180,7 +177,7 @@ def write_assigned(
 
 
 def assigned(design: DesignFile, assignments: list[str], name: str) -> dict[str, Any]:
-    """The tables of a design with ``table.key=value`` assignments, titled ``name``."""
+    """Tables of a design with ``table.key=value`` assignments applied and ``name`` as its title."""
     base = design.model_dump(by_alias=True)
     content = override(base, parse_changes(assignments), DesignFile)
     content["document"] = {**base["document"], "title": name}
@@ -189,19 +186,18 @@ def assigned(design: DesignFile, assignments: list[str], name: str) -> dict[str,
 
 
 AssignmentsOf = Callable[[Candidate], list[str]]
-"""Changes that turn the base into a candidate, as ``table.key=value``."""
+"""Function that gives the changes, as ``table.key=value``, that turn the base into a candidate."""
 
 
 def other_contact(sensor: Sensor) -> str | None:
-    """Reason why the search with the atlas alone is not enough: the pressing object, or the missing base; None if the
-    atlas is enough."""
+    """Reason why the atlas alone is not enough for the search: the pressing object, or the missing base; else None."""
     if sensor.protocol.other_contact is not None:
         return sensor.protocol.other_contact
     return "the wall passes through its base plane" if sensor.dome.base is None else None
 
 
 def contact_text(scene: ResolvedDesign) -> str:
-    """Object that presses the sensor of a base, in words."""
+    """Text for the object that presses the sensor of a base, and how."""
     contact = scene.design.contact
     rim = "" if contact.plate_rim_mm is None else f" with a rim of {contact.plate_rim_mm:g} mm radius"
     base = "" if contact.base else ", the wall passing through its base"
@@ -209,12 +205,12 @@ def contact_text(scene: ResolvedDesign) -> str:
 
 
 def without_plate(problem: SelectionProblem, sensor: Sensor) -> SelectionProblem:
-    """The problem without a plate's edge, where an object that is no plate presses."""
+    """The problem without the limit of a plate's edge, if an object that is no plate presses; else as it is."""
     return problem if sensor.protocol.body is None else replace(problem, plate_radius=np.inf, plate_share=0.0)
 
 
 def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[str]:
-    """Notes on an answer by the solid, line by line."""
+    """Lines on an answer by the solid: its contact, and how it was searched."""
     settled = f"{counted(selection.rounds, 'round')}, {counted(selection.solves, 'candidate')} solved"
     return [
         f"contact: {contact_text(scene)}",
@@ -223,7 +219,7 @@ def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[st
 
 
 class CandidateSolver:
-    """Solver of candidates as `predict` computes their designs: base and assignments drawn, pressed by the solid.
+    """Solves candidates as `predict` does their designs: the base with assignments, drawn and pressed by the solid.
 
     ``assignments`` gives the changes that turn the base into a candidate.
     """
@@ -232,7 +228,7 @@ class CandidateSolver:
         self._base, self._assignments, self._library = base, assignments, library
 
     def __call__(self, resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
-        """States at driving pressures, MPa, rising; or why there are none."""
+        """States at ascending driving pressures, MPa; or the reason why there are none."""
         from pneutouch.mechanics.models.solid import solid_states
 
         try:
@@ -243,15 +239,15 @@ class CandidateSolver:
             return SolvedStates((), "; ".join(part for part in (error.problem, error.remedy) if part))
 
     def drawn(self, resin: CandidateResin, pool: CandidatePool) -> tuple[ResolvedDesign, Sensor]:
-        """The design of a candidate and its sensor. Raises InputError if it cannot be drawn."""
+        """Design of a candidate, and its sensor. Raises InputError if it cannot be drawn."""
         choice = Candidate(resin, pool, {}, np.nan, (np.nan, np.nan), np.nan, np.nan)
         unchecked: Changes = {"indentation.checked_waves": 0}
         scene = load_scene(source_of(self._base, self._assignments(choice)), unchecked, self._library)
         return scene, sensor_of(assemble(scene))
 
     def expanded(self, resin: CandidateResin, pool: CandidatePool, state: SensorState) -> float:
-        """Relative expanded uncertainty of the sensitivity under the contact, from the candidate's solved state: the
-        budget of `predict` at that driving pressure. NaN if unknown."""
+        """Relative expanded uncertainty of the sensitivity under the contact, for a candidate's solved state: as in the
+        budget of `predict` at its driving pressure. NaN if not known."""
         scene, sensor = self.drawn(resin, pool)
         sensor = sensor.even
         if unknown(sensor, "solid") is not None:
@@ -264,7 +260,8 @@ class CandidateSolver:
     def interval(
         self, resin: CandidateResin, pool: CandidatePool, drawn: SensitivityCurve, states: Sequence[SensorState]
     ) -> tuple[Array, Array] | None:
-        """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None if not known."""
+        """Ends of the k = 2 interval of a candidate's tuning curve, (n,) each, through its states; None if not
+        known."""
         scene, sensor = self.drawn(resin, pool)
         sensor = sensor.even
         if unknown(sensor, "solid") is not None:
@@ -285,14 +282,15 @@ def sensitivity_uncertainties(
     *,
     anywhere: bool = False,
 ) -> list[Array]:
-    """Relative expanded uncertainties of the sensitivity of the designs of each resin, (n,) each.
+    """Relative expanded uncertainties of the sensitivity for the designs of each group, (n,) each.
 
-    ``anywhere`` counts an unknown place of contact; NaN for designs that its table does not cover.
+    ``known`` are measured model errors by resin. ``anywhere`` counts an unknown place of contact; NaN for designs that
+    its table does not cover.
     """
     pool = next(iter(known.values())).pool if known else ()
 
     def sources_of(resin: CandidateResin, batch: SensorBatch) -> list[UncertaintySource]:
-        """Sources of uncertainty of the designs of one resin."""
+        """Sources of uncertainty for designs of one resin."""
         return sources(
             batch,
             resin.material,
@@ -308,14 +306,14 @@ def sensitivity_uncertainties(
 
 
 def _counted(budget: Budget, *, anywhere: bool) -> Flags:
-    """Designs for which every source that the target counts is known, (n,)."""
+    """Flags (n,) of designs for which every source that the target counts is known."""
     placed = [source.counts[SENSITIVITY] for source in budget.sources if source.name == PLACE]
     whole = np.ones(budget.expanded.shape[1], dtype=bool)
     return np.asarray(whole if not anywhere else placed[0] if placed else ~whole)
 
 
 def sized_as(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
-    """The sensor with the sizes of candidate ``i`` of a batch, without a flange."""
+    """The sensor with sizes, dead volume and plate of candidate ``i`` of a batch, without a flange."""
     return sensor.replace(
         inner_radius=float(batch.inner_radius[i]),
         wall_thickness=float(batch.wall_thickness[i]),

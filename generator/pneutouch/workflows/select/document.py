@@ -1,4 +1,4 @@
-"""A selection, or a search for a grade, as a record, and in words for the terminal and the studio."""
+"""Selection, or search for a grade, as a record, and as text for the terminal and the studio."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -41,7 +41,7 @@ _NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 class WorkingChange(NamedTuple):
-    """A change of one field of the target, ``table.key``, with which a design meets it: its value and the selection."""
+    """A change of one field of the target, ``table.key``, with which designs meet it: its value and the selection."""
 
     field: str
     value: Any
@@ -49,7 +49,7 @@ class WorkingChange(NamedTuple):
 
     @property
     def best(self) -> str:
-        """The best design, in words."""
+        """The best design as text."""
         choice = self.run.answer.designs[0]
         radius, wall, figures = float(choice.pool.radius[0]), float(choice.pool.wall[0]), choice.pool.figures
         return f"{choice.resin.name}, R0 {radius:.2f} mm, t0 {wall:.2f} mm, {figures.sensitivity:.3f} kPa/N"
@@ -62,8 +62,8 @@ RelaxedValue = tuple[str, float]
 def selected(
     selection: SelectionRun, changes: Sequence[WorkingChange] = (), options: Mapping[str, RelaxedValue] = _NONE
 ) -> SelectionRecord:
-    """The selection as ``select`` prints it, with the single changes that make a design possible, and the ``options``
-    that relax a requirement, by its name."""
+    """Selection as a record, as ``select`` prints it; ``changes`` are single ones that make a design possible,
+    ``options`` fields that relax a requirement, by its name."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return SelectionRecord(
@@ -107,7 +107,7 @@ def selected(
 
 
 def _contact(selection: SelectionRun) -> Mapping[str, Any] | None:
-    """Pressing object and search with the solid; None for a contact that the atlas covers."""
+    """Pressing object and search by the solid, as data; None for a contact that the atlas covers."""
     search = selection.by_solid
     if search is None:
         return None
@@ -162,7 +162,7 @@ def _known(value: float) -> float | None:
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
-    """Value that a requirement would need for the best design without it."""
+    """Text for the value that a requirement would need for the best design found without it."""
     pool, figures = dropped.best.pool, dropped.best.pool.figures
     if dropped.requirement == "sensitivity":
         return f"{figures.sensitivity:.3g} kPa/N instead of {selection.problem.sensitivity:g}"
@@ -179,8 +179,8 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
 
 
 def relaxed(selection: SelectionRun, dropped: DroppedRequirement) -> tuple[str | None, float | None]:
-    """Field of the target, ``table.key``, and the value with which the best design without a requirement meets it,
-    rounded to the safe side; None for the rated pressure: driven at another, the sensor has another sensitivity."""
+    """Field of the target, ``table.key``, and the value, rounded to the safe side, with which the best design without a
+    requirement meets it; None for the rated pressure, as at another pressure the sensitivity is another."""
     pool, figures = dropped.best.pool, dropped.best.pool.figures
     least = selection.problem.stiffness[0]
     if dropped.requirement == "sensitivity":
@@ -199,16 +199,16 @@ def relaxed(selection: SelectionRun, dropped: DroppedRequirement) -> tuple[str |
 
 
 def _rounded(value: float, to: Callable[[float], int]) -> float:
-    """A value rounded to a hundredth by ``to`` (floor or ceil)."""
+    """The value rounded to a hundredth by ``to`` (floor or ceil)."""
     return to(100 * value) / 100
 
 
 _FEW = 9.95
-"""Percents below this are shown with a decimal."""
+"""Percentages below this are shown with a decimal."""
 
 
 def headline(selection: SelectionRun) -> str:
-    """Number of designs found, in words, or that there are none."""
+    """Line on the number of designs found, or that there is none."""
     answer = selection.answer
     if answer.designs:
         return f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
@@ -223,7 +223,7 @@ def search_notes(selection: SelectionRun) -> list[str]:
 
 
 def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
-    """Requirements that the nearest design misses, in percent of the required value."""
+    """Text for the requirements that the nearest design misses, in percent of the required value."""
     parts = []
     for name, percent in missed_percent(selection.problem, nearest).items():
         allowed = f" ({100 * selection.problem.tolerance:g} % is allowed)" if name == "sensitivity" else ""
@@ -233,19 +233,19 @@ def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
 
 
 Typed = Callable[[str, Any], str]
-"""A field of a target, ``table.key``, and its value as a person types them."""
+"""Function from a field of a target, ``table.key``, and its value to the text that a person types."""
 
 
 def in_file(field: str, value: Any) -> str:
-    """A field of a target and its value as a target file has them."""
+    """Line of a target file for a field and its value."""
     return f"{field} = {value_text(value)}"
 
 
 def dropped_lines(
     selection: SelectionRun, options: Mapping[str, RelaxedValue] = _NONE, typed: Typed = in_file
 ) -> list[str]:
-    """Each single requirement whose removal admits a design, with the value that can be reached; or that there is
-    none."""
+    """Lines on each single requirement without which a design fits, with the value that can be reached; or one line
+    that there is none."""
     lines = []
     for dropped in selection.answer.dropped:
         needs = f"{would_need(selection, dropped)} ({dropped.best.resin.name})"
@@ -256,13 +256,13 @@ def dropped_lines(
 
 
 def change_lines(changes: Sequence[WorkingChange], typed: Typed) -> list[str]:
-    """Lines on the changes that each alone let a design meet the target, requirements unchanged; empty without any."""
+    """Lines on the changes each of which alone lets a design meet the target, requirements unchanged; or none."""
     lines = [f"{typed(change.field, change.value)}: {change.best}" for change in changes]
     return ["with the same requirements, one of these alone is enough:", *lines] if lines else []
 
 
 def remarks(selection: SelectionRun) -> list[str]:
-    """The mount for a finger, designs that the check rejects, and resins that were left out."""
+    """Lines on the mount for a finger, the gauges considered, designs that the check rejects, and resins left out."""
     return [
         *mount_note(selection.target, selection.base),
         *(f"gauge {'chosen' if one.chosen else 'out'}: {one.gauge}: {one.why}" for one in selection.gauges),
@@ -272,7 +272,7 @@ def remarks(selection: SelectionRun) -> list[str]:
 
 
 def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
-    """The sleeve for the finger that the target names: its own name has the number of another finger."""
+    """Line on the sleeve for the target's finger, if its name states another finger's diameter; else none."""
     diameter_mm, name = target.target.finger_diameter_mm, base.design.connector.mount
     if diameter_mm is None or name.endswith(f"-{diameter_mm:g}"):
         return []
@@ -280,14 +280,14 @@ def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
 
 
 def _rejected_words(one: RejectedDesign) -> str:
-    """A design that the check rejects, and why."""
+    """Line on a design that the check rejects, with the reason."""
     pool = one.choice.pool
     size = f"{one.choice.resin.name}, R0 {pool.radius[0]:.2f} mm, t0 {pool.wall[0]:.2f} mm"
     return f"rejected: {size}: {one.rule + ': ' if one.rule else ''}{one.reason}"
 
 
 def graded(selection: GradedSelectionRun) -> GradedRecord:
-    """The search for a graded wall as ``select`` prints it."""
+    """Search for a graded wall as a record, as ``select`` prints it."""
     search, sensor = selection.search, selection.sensor
     return GradedRecord(
         target=selection.target.model_dump(mode="json"),
@@ -336,7 +336,7 @@ def _each_known(values: tuple[float, ...]) -> tuple[float | None, ...]:
 
 
 def graded_missed(selection: GradedSelectionRun) -> list[str]:
-    """Requirements that the best grade misses, and the range over which it can be moved at this size, in words."""
+    """Lines on requirements that the best grade misses, and on the sensitivities of all grades tried at this size."""
     grade_target, best = selection.grade_target, selection.search.best
     values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
     texts = {
@@ -363,7 +363,7 @@ def graded_missed(selection: GradedSelectionRun) -> list[str]:
 
 
 def rated_warning(selection: GradedSelectionRun) -> str | None:
-    """Warning of a driving pressure above the rated one, in words; None if there is none."""
+    """Warning text for a driving pressure above the rated one; None if there is none."""
     best, highest = selection.search.best, max(selection.grade_target.pressures)
     if best.note or highest <= best.rated:
         return None

@@ -1,4 +1,4 @@
-"""A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
+"""Graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
 from dataclasses import dataclass, replace
 
@@ -43,21 +43,21 @@ from pneutouch.workflows.select.checks import judge, other_contact, source_of, w
 from pneutouch.workflows.select.select import grade_text, problem_of
 
 _LEVELS = 4
-"""Number of fractions scanned at pole and rim: moduli twice apart for TangoPlus and VeroClear, 16 trials."""
+"""Number of fractions scanned at pole and rim: moduli in steps of two for TangoPlus and VeroClear, 16 trials."""
 _TRIALS = 48
 _WALL_ROUNDS = 2
-"""Number of corrections of the wall under a contact that the atlas does not cover; the solid searches the grade."""
+"""Number of corrections of the wall under a contact that the atlas does not cover; the solid then searches the
+grade."""
 _SMALLER = "give a smaller given.inner_radius_mm (`inner_radius`)"
 
 
 @dataclass(frozen=True)
 class GradedSelectionRun:
-    """A search for a grade with everything needed to show and write it.
+    """A search for a grade with all that is needed to show and write it.
 
-    changes: what the target changes in its base, by ``table.key``. sensor: the base's, with the radius and wall
-    searched at. constants: catalogue resins, then the nearest mix. solves: solid solves in all. rejected: why
-    ``check`` rejects a grade that meets the target, None if it passes or none meets it.
-    """
+    changes: what the target changes in its base, by ``table.key``. sensor: the base's, with the radius and wall of the
+    search. constants: catalogue resins, then the nearest mix. left_out: resins that are no constants, with the reason.
+    rejected: why ``check`` rejects a grade that meets the target; None if it passes or no grade meets it."""
 
     target: Target
     base: ResolvedDesign
@@ -91,7 +91,7 @@ class GradedSelectionRun:
         return self.pair.grade(self.search.best.pole, self.search.best.rim)
 
     def meets(self, trial: GradeTrial) -> bool:
-        """True if a membrane keeps every tolerance and limit."""
+        """True if a membrane meets every tolerance and limit."""
         return max(shares(self.grade_target, trial).values()) <= 1.0
 
     def assignments(self) -> list[str]:
@@ -106,7 +106,7 @@ class GradedSelectionRun:
         return [f"{key}={value}" for key, value in values.items()] + assignments(self.changes)
 
     def rejection(self, library: Library) -> str | None:
-        """Reason why ``check`` rejects the best grade, None if it passes."""
+        """Reason why ``check`` rejects the best grade; None if it passes."""
         why = judge(source_of(self.base, self.assignments()), library, predicted=True).reason
         return None if why is None else ": ".join(part for part in why if part)
 
@@ -118,11 +118,10 @@ def select_graded(
     progress: TrialReport = lambda trial, done, most: None,
     trials: int | None = None,
 ) -> GradedSelectionRun:
-    """Answer a target that requires a grade. Raises InputError if it names something unknown.
+    """Search a grade for a target that requires one. Raises InputError if it names something unknown.
 
-    ``where`` names the file in messages; ``trials`` bounds the solid solves of the search. A grade that meets the
-    target is judged as ``check`` does.
-    """
+    ``where`` names the file in messages; ``trials`` bounds the number of grades solved (None: `_TRIALS`). A grade that
+    meets the target is judged as ``check`` does."""
     library = library or Library.default()
     scene = base_scene(target, where, library)
     pair = requested_pair(target, where, scene.printer, library)
@@ -161,7 +160,8 @@ def _grade_target(target: Target) -> GradeTarget:
 
 
 def _wall(target: Target, where: str, grade_target: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
-    """Wall, mm: as given; else the one with which the mix of middle modulus has the sensitivity; else the base's."""
+    """Wall, mm: as given; else the one at which the middle mix has the sensitivity; else the base's. Raises InputError
+    if too thick or thin."""
     radius, most = base.dome.inner_radius, target.target.max_diameter_mm
     thickest = np.inf if most is None else 0.5 * most - radius
     wall = target.given.wall_thickness_mm
@@ -189,7 +189,8 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
 
 
 def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sensor, thickest: float) -> float | None:
-    """Wall of `middle_wall`; under a contact that the atlas does not cover, with the target corrected by the solid."""
+    """Wall by `middle_wall`, mm, or None; under a contact that the atlas does not cover the solid corrects the
+    target."""
     radius, target_kPa_per_N = base.dome.inner_radius, grade_target.sensitivity
     problem = without_plate(problem, base)
     wall = middle_wall(grade_target, problem, radius, thickest)
@@ -207,7 +208,7 @@ def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sen
 
 
 def _check_footprint(target: Target, where: str, problem: SelectionProblem, sensor: Sensor) -> None:
-    """Refuse a size whose connector has no space or is wider than the target allows."""
+    """Raise InputError if the whole sensor is wider than the target allows."""
     radius, wall, most = sensor.dome.inner_radius, sensor.dome.wall_thickness, target.target.max_footprint_mm
     assert problem.connector is not None
     footprint = float(problem.connector(np.array([radius]), np.array([wall])).diameter[0])
@@ -229,7 +230,7 @@ def _trial(
     pole: float = np.nan,
     rim: float = np.nan,
 ) -> GradeTrial:
-    """The sensor in a material, with its rated pressure."""
+    """Trial of the sensor in a material, with its rated pressure."""
     built = in_resin(sensor, material)
 
     def rate(limits: Limits) -> float:
@@ -241,7 +242,7 @@ def _trial(
 def _catalogue(
     scene: ResolvedDesign, sensor: Sensor, grade_target: GradeTarget, library: Library
 ) -> tuple[list[UniformMembrane], dict[str, str]]:
-    """Every elastomer of the catalogue at this size, softest first, and why the others are left out."""
+    """All elastomers of the catalogue at this size, softest first, and the reasons, by name, for those left out."""
     resins, out = [], {}
     for name, material in elastomers(library).items():
         if scene.printer.mode_for(material) is None:
@@ -260,10 +261,9 @@ def _nearest(
     printer: Printer,
     search: GradeSearch,
 ) -> UniformMembrane:
-    """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid.
+    """Constant mix nearest to the target, solved by the solid: found by the atlas, else the nearest of those tried.
 
-    If the solid finds it outside a tolerance, the atlas searches once more, corrected by that solution.
-    """
+    If the solid finds the atlas's mix outside a tolerance, the atlas searches once more, corrected by that solution."""
 
     def solved(fraction: float) -> UniformMembrane:
         grade = pair.grade(round(fraction, 4))
@@ -285,7 +285,7 @@ def _nearest(
 
 
 def _atlas_covers(problem: SelectionProblem, pair: ResinPair, sensor: Sensor) -> bool:
-    """True if the atlas answers for the constant mixes of a pair."""
+    """True if the atlas covers the constant mixes of a pair."""
     middle, recipe = problem.resins[0].material, shipped().recipe
     soft = float(pair.law.modulus_at(np.array(0.0)))
     return (

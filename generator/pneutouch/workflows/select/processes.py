@@ -1,7 +1,6 @@
-"""One target over several processes: a selection for each process, on one of its profiles.
+"""Selection over several processes: one for each process, on one of its printers.
 
-A selection with its gauge: the one named, or the one that covers the range and detects the smallest force.
-"""
+Also a selection with its gauge: the one named, or the one that covers the range and detects the smallest force."""
 
 from __future__ import annotations
 
@@ -31,7 +30,7 @@ _UNKNOWN = "its noise is not stated, so the smallest force is not known"
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A gauge by name, and its reading at the ambient pressure."""
+    """A gauge: its name, and its reading at the ambient pressure."""
 
     name: str
     reading: GaugeReading
@@ -52,10 +51,10 @@ def select(
     written: int | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
-    """Answer a target as `select.select` does; with ``setting.gauge`` "any" also choose the gauge.
+    """Search a target as `select.select` does; with ``setting.gauge`` "any" choose the gauge too.
 
-    Gauges are tried in the order of the smallest force that they detect; the first one whose range no selected design
-    leaves is taken. Those whose noise is not stated come last. If there is none, the answer has no design.
+    Gauges are tried in the order of the smallest force that they detect, those without stated noise last; the first
+    whose range no selected design leaves is taken. If there is none, the answer has no design.
     """
     library = CachedLibrary((library or Library.default()).folders)
     named = target.setting.gauge
@@ -88,7 +87,7 @@ def select(
 
 
 def _parts(target: Target, where: str, library: Library) -> list[_Part]:
-    """All gauges that read above the ambient pressure, those first that detect the smallest change of pressure."""
+    """Gauges that read above the ambient pressure: first those that detect the smallest change of pressure."""
     ambient_kPa = base_scene(_with(target, None), where, library).design.pneumatics.ambient_pressure_kPa
     gauges = {name: one for name, one in library.all("gauges", Gauge).items() if target.have.holds("gauges", name)}
     parts = [_Part(name, gauge_reading(gauge, ambient_kPa * KPA)) for name, gauge in gauges.items()]
@@ -123,7 +122,7 @@ def _not_covered(part: _Part, run: SelectionRun, written: int | None) -> str | N
 
 
 def _judged(chosen: _Part, parts: list[_Part], slope: float, target: Target) -> list[GaugeTrial]:
-    """The gauge chosen and those after it; ``slope`` is the best design's sensitivity, MPa/N."""
+    """Records of the chosen gauge and of those not tried; ``slope`` is the best design's sensitivity, MPa/N."""
     threshold = chosen.reading.threshold
     force = None if threshold is None else threshold / slope
     detects = (
@@ -142,7 +141,7 @@ def _judged(chosen: _Part, parts: list[_Part], slope: float, target: Target) -> 
 
 @dataclass(frozen=True)
 class ProcessSelection:
-    """The answers by process, with the profile of each; ``left_out`` says why a process was not searched."""
+    """Selections by process, with the printer of each; ``left_out`` has the reasons for processes not searched."""
 
     runs: dict[str, SelectionRun]
     profiles: dict[str, str]
@@ -150,12 +149,12 @@ class ProcessSelection:
 
     @property
     def best(self) -> list[tuple[str, SelectionRun]]:
-        """Process and answer of each that has a design, in the order given."""
+        """Process and selection of each that has a design, in the order given."""
         return [(process, run) for process, run in self.runs.items() if run.answer.designs]
 
     @property
     def record(self) -> ProcessesRecord:
-        """The answers as ``select`` prints them."""
+        """The selections as ``select`` prints them."""
         shown = {
             process: extended(ProcessRecord, selected(run), profile=self.profiles[process])
             for process, run in self.runs.items()
@@ -170,10 +169,10 @@ def select_processes(
     *,
     progress: Callable[[int, int, str], None] = lambda done, total, step: None,
 ) -> ProcessSelection:
-    """Answer a target once for each of its ``setting.processes``. Raises InputError as `select` does.
+    """Search a target once for each of its ``setting.processes``. Raises InputError as `select` does.
 
-    A process takes the base's profile if that is of the process, else its first that makes an elastomer; resins that
-    the target names count for the processes that make them.
+    A process takes the base's printer if that is of the process, else its first that makes an elastomer; resins that
+    the target names are searched only in the processes that make them.
     """
     library = CachedLibrary((library or Library.default()).folders)
     names = _named(target, library)
@@ -208,7 +207,8 @@ _Offer = tuple[str, list[str] | None]
 
 
 def _profile(process: str, target: Target, library: Library, usual: str = "") -> _Offer | None:
-    """A profile on the shelf of a process, and those of the resins named that it makes; None if it makes none."""
+    """Printer of a process that is on the shelf and makes one of the resins (``usual`` if it does), and those of the
+    named resins that it makes (None if none is named); None without such a printer."""
     resins, shelf = target.given.materials, target.have
     printers = {name: one for name, one in library.all("printers", Printer).items() if shelf.holds("printers", name)}
     names = resins or [name for name in library.all("materials", Material) if shelf.holds("materials", name)]
@@ -221,8 +221,8 @@ def _profile(process: str, target: Target, library: Library, usual: str = "") ->
 
 
 def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bool = False) -> list[str]:
-    """Other printers of a base's process that make one of the resins named, or an elastomer; with ``others`` the other
-    processes of which a printer does."""
+    """Other printers of the base's process that make one of the resins named, or an elastomer if none is; with
+    ``others`` instead the other processes that have such a printer."""
     here = base.printer.process
     if others:
         processes = (process for process in get_args(Process) if process != here)
@@ -240,13 +240,13 @@ def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bo
 
 
 def on_process(target: Target, process: str, library: Library) -> Target:
-    """The target on the printer that makes its resins by a process; as it is if none does."""
+    """The target on a printer that makes its resins by a process; unchanged if none does."""
     offered = _profile(process, target, library)
     return target if offered is None else _of(target, process, *offered)
 
 
 def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
-    """Reason why no profile of a process makes the resins named, with the file that lacks their casting."""
+    """Reason why no printer of a process makes the resins named; one whose file lacks [casting] is named first."""
     printers = [one for one in library.readable("printers", Printer).values() if one.process == process]
     for name in resins or ():
         material: Material = library.load("materials", name, key="given.materials")
@@ -257,7 +257,7 @@ def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
 
 
 def _of(target: Target, process: str, profile: str, resins: list[str] | None) -> Target:
-    """The target on one profile."""
+    """The target on one printer, with its resins."""
     changes: dict[str, Any] = {"profile": profile, "processes": None}
     if process == "casting":
         # What the target sets comes after it.

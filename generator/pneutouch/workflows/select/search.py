@@ -1,8 +1,7 @@
-"""The answer to a target of any kind: designs by rank, with a gauge chosen if any may be taken, a grade, or the best of
-each process.
+"""Answer to a target of any kind: ranked designs, with a gauge chosen if it is left open, a grade, or the best of each
+process.
 
-For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough.
-"""
+For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough."""
 
 from __future__ import annotations
 
@@ -29,26 +28,26 @@ from pneutouch.workflows.select.processes import ProcessSelection, offers, on_pr
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
 
 SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
-"""Output of ``select``, by the kind of its target."""
+"""Record that ``select`` prints, by the kind of its target."""
 
 
 @dataclass(frozen=True)
 class FoundChoice:
-    """A design that meets a target: its rank or process, its base, and the assignments that change the base into it."""
+    """A design that meets a target: its rank or process, its base, and the assignments that turn the base into it."""
 
     label: str
     base: ResolvedDesign
     assignments: list[str]
 
     def write(self, name: str, folder: Path, *, overwrite: bool = False) -> Path:
-        """Save the design as ``folder/name.toml`` for ``build``; replace a file only if ``overwrite``."""
+        """Write the design as ``folder/name.toml`` for ``build``; replace a file only if ``overwrite``."""
         return write_assigned(self.base.design, self.assignments, name, folder, overwrite=overwrite)
 
 
 @dataclass(frozen=True)
 class TargetAnswer:
-    """An answer: its record, the designs that meet the target, best first, the reason why ``check`` rejects a grade
-    that would meet it, and, without designs, the single changes that make one possible."""
+    """An answer: its record; the designs that meet the target, best first; why ``check`` rejects a grade that meets it;
+    without designs, single changes that make one possible, and options that relax a requirement."""
 
     run: SelectionRun | GradedSelectionRun | ProcessSelection
     record: SelectedRecord
@@ -58,7 +57,7 @@ class TargetAnswer:
     options: Mapping[str, RelaxedValue] = field(default_factory=dict)
 
     def pick(self, rank: int) -> FoundChoice:
-        """The design of a rank, or of a row over processes, from 1. Raises InputError if there is none."""
+        """Design of a rank, or of a row over processes, counted from 1. Raises InputError if there is none."""
         if not 1 <= rank <= len(self.choices):
             raise InputError(f"must be from 1 to {len(self.choices)}", key="pick", value=rank)
         return self.choices[rank - 1]
@@ -74,7 +73,7 @@ def search(
 ) -> TargetAnswer:
     """Answer a target. Raises InputError if it names something unknown; ``where`` names the file in messages.
 
-    The design of rank ``written``, to be saved, passes all that ``check`` looks at, as the best one does.
+    The best design and that of rank ``written``, which is to be saved, pass the whole ``check``.
     """
     if target.setting.processes is not None:
         over = select_processes(target, where, library, progress=progress)
@@ -98,13 +97,13 @@ def search(
 
 
 class Change(NamedTuple):
-    """A change of a field of the target, ``table.key``; for ``setting.assignments`` an additional assignment."""
+    """A change of a field of the target, ``table.key``, to a value; for ``setting.assignments`` one more assignment."""
 
     field: str
     value: Any
 
     def of(self, target: Target, library: Library) -> Target:
-        """The target with this change; a process is set by a printer that makes the target's resins."""
+        """The target with this change; another process comes with a printer that makes the target's resins by it."""
         table, _, key = self.field.partition(".")
         if key == "processes":
             return on_process(target, self.value[0], library)
@@ -115,8 +114,8 @@ class Change(NamedTuple):
 
 
 def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, RelaxedValue]:
-    """Field and value of each requirement that alone prevents a design, by its name; only those with which the search
-    finds one, for the best design of a coarse scan may lose a margin at round sizes."""
+    """Field and value that relax each requirement which alone prevents a design, by its name; only those with which the
+    search does find one, as the best design of a coarse scan may lose a margin at round sizes."""
     if run.by_solid is not None or run.gauges:
         return {}
     library, options = CachedLibrary((library or Library.default()).folders), {}
@@ -132,11 +131,12 @@ def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[
 def working_changes(
     run: SelectionRun, where: str, library: Library | None, trying: Callable[[str], None] = lambda what: None
 ) -> Iterator[WorkingChange]:
-    """Changes of tube, port, gauge, settled sizes, resins and process, each of which alone makes a design possible.
+    """Changes of tube, port, gauge, given sizes, resins, printer and process, each of which alone makes a design
+    possible.
 
-    Each was searched, and the design passes ``check``; of tubes and dead volumes the value nearest to the target's own
-    is given. Nothing is tried if the solid searches (minutes for each change), ``check`` rejected a design, or the
-    gauge is left open.
+    Each was searched, and its best design passes ``check``; of tubes and dead volumes the value nearest to the target's
+    own is given. None is tried if the solid searches (minutes for each), ``check`` rejected a design, or the gauge is
+    open.
     """
     if run.by_solid is not None or run.rejected or run.gauges or run.answer.nearest is None:
         return
@@ -159,14 +159,14 @@ def working_changes(
 
 
 _BEHIND_THE_CAVITY = ("setting.tube_length_mm", "setting.dead_volume_mL", "setting.assignments", "setting.gauge")
-"""Changes that are tried only with the resins of the nearest designs, in a fraction of the time of all."""
+"""Fields whose changes are tried only with the resins of the nearest designs, in a fraction of the time."""
 
 
 def _tried(
     target: Target, where: str, library: Library, near: Sequence[Candidate], *, thorough: bool = False
 ) -> SelectionRun | None:
-    """The selection for a changed target, with the resins of ``near`` only if there are some; None if no design, on the
-    scan without ``thorough``, meets the target and passes ``check``."""
+    """Selection for a changed target, only with the resins of ``near`` if there are some; None if no design meets the
+    target and passes ``check``. Without ``thorough`` only the scan is searched."""
     names = sorted({choice.resin.name for choice in near if choice.resin.grade is None})
     if names:
         target = target.model_copy(update={"given": target.given.model_copy(update={"materials": names})})
@@ -178,7 +178,7 @@ def _tried(
 
 
 def _trials(run: SelectionRun, library: Library) -> Iterator[tuple[str, list[Change]]]:
-    """Things to change, each with its values in the order to be tried."""
+    """Things to change, each with its changes in the order in which they are tried."""
     given = run.target.given
     yield _volumes(run)
     yield "port", [Change("setting.assignments", f"connector.port={name}") for name in _ports(run, library)]
@@ -201,7 +201,7 @@ _MULTIPLES = (2.0, 4.0, 8.0)
 
 
 def _volumes(run: SelectionRun) -> tuple[str, list[Change]]:
-    """Less gas behind the cavity for a sensitivity that is not reached, more for one that is exceeded."""
+    """Less gas behind the cavity for a sensitivity that is not reached, more for one exceeded; with its name."""
     assert run.answer.nearest is not None
     wanted, pneumatics = run.problem.sensitivity, run.base.design.pneumatics
     more = wanted is not None and run.answer.nearest.pool.figures.sensitivity > wanted
@@ -215,7 +215,7 @@ def _volumes(run: SelectionRun) -> tuple[str, list[Change]]:
 
 
 def _wider(run: SelectionRun, library: Library) -> list[str]:
-    """The gauge that reads furthest, if that is further than the base's."""
+    """Name of the gauge that reads furthest, if that is further than the base's; else none."""
     ambient = run.sensor.gas.ambient_pressure
     gauges, have = library.all("gauges", Gauge), run.target.have
     limits = {name: gauge_reading(one, ambient).limit for name, one in gauges.items() if have.holds("gauges", name)}
@@ -224,11 +224,11 @@ def _wider(run: SelectionRun, library: Library) -> list[str]:
 
 
 _PORTS = 3
-"""Greatest number of ports that are tried, in the order of `_ports`."""
+"""Greatest number of ports that are tried."""
 
 
 def _ports(run: SelectionRun, library: Library) -> list[str]:
-    """Other ports, by least gas first; or by least footprint first, if the footprint is exceeded."""
+    """Other ports, least gas first; or least diameter first, if footprint or space is exceeded."""
     nearest = run.answer.nearest
     assert nearest is not None
     radius, wall = nearest.pool.radius, nearest.pool.wall

@@ -1,4 +1,4 @@
-"""Selection of designs for a target: resolve names, search, confirm the best by the solid, write the chosen one."""
+"""Selection of designs for a target: resolve names, search, check, and confirm the best by the solid."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ from pneutouch.workflows.select.checks import (
 )
 
 _CONFIRMED = 3
-"""Number of designs that are confirmed by the solid."""
+"""Number of designs that the solid confirms."""
 _NOTHING = SelectionResult([], None, [], 0)
 _PLATE_SHARE = 1.25
-"""Radius over R0 of the plate where no base gives one: the contact of an inflated dome grows past R0."""
+"""Radius of the plate over R0 if no base gives one: the contact of an inflated dome grows past R0."""
 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """The result of the solid for a design: sensitivity (kPa/N) and True if it lies within the stated uncertainty."""
+    """Result of the solid for a design: sensitivity (kPa/N), and True if it lies within the stated uncertainty."""
 
     sensitivity: float
     within: bool
@@ -73,13 +73,12 @@ class Confirmation:
 
 @dataclass(frozen=True)
 class SelectionRun:
-    """An answer with everything needed to show, check and write it.
+    """A selection with all that is needed to show, check and write it.
 
-    changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
-    ``check`` would reject, best first. judged: designs of the answer that pass ``check``, as it predicts them, by rank.
-    gauges: those considered, where the target leaves the gauge open.
-    by_solid: how the search went where the solid answers the base's contact and the atlas does not.
-    """
+    changes: what the target changes in its base, by ``table.key``. left_out: resins, with the reason. rejected: designs
+    that ``check`` rejects, best first. judged: evaluations by rank of designs of the answer that pass ``check``.
+    confirmed: the solid's results by rank. gauges: those considered, if the target leaves the gauge open. by_solid: the
+    search by the solid, None for a contact that the atlas covers."""
 
     target: Target
     base: ResolvedDesign
@@ -95,7 +94,7 @@ class SelectionRun:
     gauges: tuple[GaugeTrial, ...] = ()
 
     def assignments(self, choice: Candidate) -> list[str]:
-        """Changes that turn the base design into a choice, as ``table.key=value``."""
+        """Changes that turn the base design into a candidate, as ``table.key=value``."""
         pool = choice.pool
         radius, pressure_kPa = float(pool.radius[0]), float(pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure_kPa, 6)})
@@ -114,12 +113,13 @@ class SelectionRun:
         return values + assignments(self.changes)
 
     def footprint(self, choice: Candidate) -> float:
-        """Diameter of the whole sensor, mm: membrane, flange and connector; a port at its side stands out of it."""
+        """Diameter of the whole sensor, mm: membrane, flange and connector, without a port that stands out at its
+        side."""
         assert self.problem.connector is not None
         return float(self.problem.connector(choice.pool.radius, choice.pool.wall).diameter[0])
 
     def sensor_of(self, choice: Candidate) -> Sensor:
-        """Sensor of a choice, otherwise with the properties of the base design."""
+        """Sensor of a candidate, with all other properties from the base design."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
         return sized_as(self.sensor, batch, 0).replace(
@@ -133,7 +133,7 @@ class SelectionRun:
 
 
 STEPS = ("base", "search", "print rules", "solid")
-"""The steps that a selection reports, in order."""
+"""Steps that a selection reports, in order."""
 
 
 def select(
@@ -144,11 +144,10 @@ def select(
     written: int | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
-    """Answer a target. Raises InputError if it names something unknown; ``where`` names the file in messages.
+    """Search a target's designs. Raises InputError if it names something unknown; ``where`` names the file in messages.
 
-    The best design and that of rank ``written``, to be saved, pass all that ``check`` looks at; those between them
-    the print rules. Designs that do not are taken out of the answer.
-    """
+    The best design and that of rank ``written``, to be saved, pass the whole ``check``, those between them the print
+    rules; designs that do not are taken out of the answer."""
     library = CachedLibrary((library or Library.default()).folders)
     run = found(target, where, library, progress=progress)
     progress("print rules")
@@ -170,8 +169,7 @@ def found(
 ) -> SelectionRun:
     """Search for designs, by rank; neither the print rules nor the solid check them.
 
-    Without ``thorough`` only the scan is searched: a design between its points may be missed.
-    """
+    Without ``thorough`` only the coarse scan is searched: a design between its points may be missed."""
     progress("base")
     scene = base_scene(target, where, library)
     sensor = base_sensor(scene)
@@ -187,7 +185,8 @@ def found(
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
-    """The run with its answer: by the atlas, or by the solid where only that covers the base's contact."""
+    """The run with its answer, by the atlas, or by the solid if only that covers the base's contact or a resin's
+    law."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
@@ -211,7 +210,7 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, tho
 
 
 def passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
-    """The run without designs that do not pass ``check``; they are tried by rank until enough pass."""
+    """The run without designs that do not pass ``check``, which are tried by rank until ``written`` (or one) pass."""
     passed: list[Candidate] = []
     rejected: list[RejectedDesign] = []
     judged: dict[int, Evaluation] = {}
@@ -231,12 +230,12 @@ def passing(run: SelectionRun, written: int | None, library: Library) -> Selecti
 
 
 def _written(resin: CandidateResin) -> str:
-    """A resin as a design names it: by its name, or as the mix that it is."""
+    """Text for a resin in a design: its name, or the table of the mix that it is."""
     return resin.name if resin.grade is None else grade_text(resin.grade)
 
 
 def grade_text(grade: Grade) -> str:
-    """A grade as a design file has it."""
+    """Text for a grade in a design file."""
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
@@ -247,7 +246,8 @@ def _refined(pair: ResinPair) -> Refine:
 def _resins(
     target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
 ) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
-    """Resins the printer runs and the atlas covers, and why others of its process are left out."""
+    """Resins that the printer runs and the atlas covers, and the reasons, by name, for others of its process left
+    out."""
     casting = scene.printer.is_casting
     offered = (name for name, one in elastomers(library, casting).items() if one.is_cast == casting)
     names = target.given.materials or sorted(offered)
@@ -271,14 +271,14 @@ def _resins(
 
 
 def _atlas(scene: ResolvedDesign) -> Atlas:
-    """The atlas to search with: for cast resins with its box opened to soft walls, since the solid corrects it."""
+    """Atlas to search with; for cast resins its range is extended to soft walls, as the solid corrects the result."""
     return softer_walls() if scene.printer.is_casting else shipped()
 
 
 def problem_of(
     target: Target, scene: ResolvedDesign, sensor: Sensor, resins: tuple[CandidateResin, ...]
 ) -> SelectionProblem:
-    """Selection problem of a target, in numbers, on a base with its sensor."""
+    """Selection problem, in numbers, of a target on a base with its sensor."""
     required, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
@@ -308,7 +308,7 @@ def problem_of(
 
 
 def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | None) -> Confirmation:
-    """The solid's sensitivity, compared with that of the atlas; a judged design has it already."""
+    """Sensitivity by the solid, compared with the atlas's; from the evaluation ``judged`` if there is one."""
     from pneutouch.mechanics.models.solid import solid_states
 
     if judged is None:
