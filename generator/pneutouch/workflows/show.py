@@ -1,4 +1,4 @@
-"""Content of a 3MF, as data, or of a voxel stack, as data and as a picture."""
+"""Content of a 3MF file as data, and of a voxel stack as data and as a picture."""
 
 from pathlib import Path
 
@@ -15,21 +15,20 @@ from pneutouch.output.recipe import other_versions, read_recipe, stored_versions
 from pneutouch.results.stored import PrintedResin, ShownBody, ShownPackage, ShownRecipe, ShownStack
 
 _SHOWN_APART = (RECIPE, TRAY_RECIPE, "versions")
-"""Entries that are shown apart, or are too long to be read."""
+"""Entries of the metadata that are shown elsewhere or are too long."""
 
 _RASTER = ("pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm")
 _HELD = ("name", "printer", "mode", "prefix", *_RASTER, "bodies", "dither", "assumptions", "input_hash", "sha256")
-"""Keys of a stack's manifest that are shown as they are."""
+"""Keys of a stack's manifest that are shown unchanged."""
 
 _DIGITS = 6
-"""Decimals of lengths in mm and volumes in mm3: those that the 3MF is written with."""
+"""Decimals of lengths in mm and volumes in mm3, as many as the 3MF is written with."""
 
 
 def show(path: Path) -> ShownPackage:
-    """The content of a 3MF: bodies, metadata and the recipe, None if the file is not one of ours.
+    """Content of a 3MF file: bodies, metadata and recipe; the recipe is None if the file holds none.
 
-    Raises InputError for a file that is unsafe, not valid, or whose recipe is damaged.
-    """
+    Raises InputError for a file that is unsafe, not valid, or whose recipe is damaged."""
     package = read_threemf(path)
     return ShownPackage(
         file=str(path),
@@ -55,7 +54,7 @@ def _body(body: StoredBody) -> ShownBody:
 
 
 def _recipe(package: Package) -> ShownRecipe:
-    """The recipe with the versions and the input hash that are stored with it; nothing is computed from it."""
+    """Recipe with the versions and the input hash stored beside it; nothing is computed from it."""
     recipe = read_recipe(package)
     return ShownRecipe(
         format=format_of("recipe"),
@@ -69,11 +68,12 @@ def _recipe(package: Package) -> ShownRecipe:
 
 
 _BACKGROUND = np.uint32(0xFFFFFFFF)
-"""White in the picture, where the stack has black."""
+"""White, for the picture's background; the stack has black."""
 
 
 def show_stack(folder: Path, picture: Path | None = None) -> ShownStack:
-    """The content of a stack, its rules checked, voxels counted in the slices; ``picture`` takes a PNG of two sections.
+    """Content of a stack, checked, with voxels counted in the slices; ``picture``: path for a PNG of two sections, or
+    None.
 
     Raises InputError for a stack that breaks a rule and for a picture that cannot be written.
     """
@@ -95,7 +95,7 @@ def show_stack(folder: Path, picture: Path | None = None) -> ShownStack:
 
 
 def draw(stack: VoxelStack, path: Path) -> None:
-    """A PNG of the middle section (x across, z up) above the middle slice (x across, y up), to one scale."""
+    """Write a PNG of the middle section (x across, z up) above the middle slice (x across, y up), to one scale."""
     x, y = stack.manifest["pixel_um"]
     upper = _stretched(stack.section[::-1], stack.manifest["layer_um"] / x)
     lower = _stretched(stack.labels(stack.manifest["layers"] // 2), y / x)
@@ -107,7 +107,7 @@ def draw(stack: VoxelStack, path: Path) -> None:
 
 
 def _stretched(labels: Labels, ratio: float) -> Labels:
-    """Rows repeated or left out so that a row is as tall as a column is wide: no colour is blended."""
+    """Rows repeated or left out so that a row is as high as a column is wide: no colours are blended."""
     rows = max(1, round(len(labels) * ratio))
     source = np.minimum(((np.arange(rows) + 0.5) / ratio).astype(np.int64), len(labels) - 1)
     return labels[source]

@@ -1,4 +1,4 @@
-"""A campaign that was never measured: simulated runs of known sensors in a folder that reads like a measured one."""
+"""Simulated campaign: runs of known sensors, never measured, in a folder that reads like a measured one."""
 
 import zlib
 from collections.abc import Callable, Iterator
@@ -50,15 +50,15 @@ from pneutouch.workflows.simulate_inputs import (
 )
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
-"""Volumes of an injection run that no plan states, mm3: 0 to 0.5 mL, our choice."""
+"""Volumes of an injection run if no plan states them, mm3: 0 to 0.5 mL, our choice."""
 
 _OPTIONS = {"rate_Hz": "rate"} | {
     key: key for key in ("specimens", "driving_pressures_kPa", "runs", "kinds", "seed", "model", "ages_days", "parquet")
 }
-"""Options that a campaign depends on, in addition to its resins, and their keys in the hashed inputs."""
+"""Options, besides the resins, that a campaign depends on, and their keys in the hashed inputs."""
 
 _DEVIATION = 1
-"""Number of the random stream of a specimen's deviation, apart from that of its parameters."""
+"""Last part of the seed for a specimen's deviation, which separates it from that of its parameters."""
 
 Progress = Callable[[int, int], None]
 
@@ -75,7 +75,7 @@ def simulate(
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
     ``design`` may be the folder of a plan, whose runs are simulated. While they are made, runs are written to a hidden
-    folder next to the final one. Raises InputError if that is impossible.
+    folder next to the final one. Raises InputError for what cannot be simulated.
     """
     library = library or Library.default()
     design, changes, asked = as_planned(design, changes, options, library)
@@ -99,7 +99,7 @@ def simulate(
 
 
 class _Writer:
-    """Writes files into a folder and keeps their digests."""
+    """Writes files into a folder, and keeps their manifest entries by name."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -114,7 +114,7 @@ class _Writer:
 
 @dataclass
 class _Truth:
-    """True values of the specimens that were simulated so far, and notes on their runs."""
+    """True values, by label, of the specimens simulated so far, and notes on their runs."""
 
     specimens: dict[str, SimulatedSpecimen] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -167,7 +167,7 @@ def _write_all(
 
 
 def _rig(scene: ResolvedDesign, rate_Hz: float) -> Rig:
-    """The simulated rig with the gauge that the design names; without one the paper's."""
+    """Rig for the campaign file: the paper's, with the range of the gauge that the design names, if it names one."""
     if scene.gauge is None:
         return Rig(name="simulated: the paper's instruments", rate_Hz=rate_Hz)
     reading = reading_of(scene)
@@ -176,7 +176,7 @@ def _rig(scene: ResolvedDesign, rate_Hz: float) -> Rig:
 
 
 def _check_rate(scene: ResolvedDesign, rate_Hz: float) -> None:
-    """Raise InputError for a rate that the gauge does not reach."""
+    """Raise InputError for a sampling rate above that of the design's gauge."""
     most_Hz = reading_of(scene).rate_Hz
     if scene.gauge is not None and most_Hz is not None and rate_Hz > most_Hz:
         raise InputError(
@@ -194,9 +194,9 @@ def _parameters(subject: SimulatedResin) -> dict[str, dict[str, ParameterValue]]
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
-    """A campaign as a file; raises InputError if it could not be read again.
+    """Content of a campaign file. Raises InputError if it could not be read again.
 
-    Columns and format are left out where nothing is stated of them, so that they are found from the files."""
+    Columns and format are left out if nothing is stated of them; they are then found from the files."""
     open_ = {key for key in ("columns", "format") if getattr(campaign, key) == Campaign.model_fields[key].default}
     content = campaign.model_dump(mode="python", exclude_none=True, exclude=open_)
     validate(Campaign, content, "campaign.toml")
@@ -204,7 +204,7 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
 
 def _depth(subject: SimulatedResin, options: RequestedRuns) -> float:
-    """The deepest plate travel of the chosen kinds, mm."""
+    """Greatest plate travel of the requested kinds of run, mm."""
     reach = subject.sensor.dome.shape.height
     kinds = [kind for kind in options.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
@@ -227,7 +227,7 @@ def _populations(subject: SimulatedResin, age: float, options: RequestedRuns) ->
 def _specimen(
     subject: SimulatedResin, name: str, k: int, age: float, options: RequestedRuns, truth: _Truth
 ) -> Iterator[tuple[CampaignRun, bytes]]:
-    """Every run of one specimen, the resin's k-th, at one age, and its true values."""
+    """Runs of one specimen, the resin's k-th, at one age, with their files; its true values go into ``truth``."""
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
     drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
@@ -277,7 +277,7 @@ def _columns(
     options: RequestedRuns,
     rng: np.random.Generator,
 ) -> dict[str, Array]:
-    """The columns of one run in the units of its file."""
+    """Columns of one run by name, in the units of its file."""
     truth, curve, sensor = subject.truth, pressed_curves.curves[place], pressed_curves.sensor
     if run.kind == "injection":
         gas, pushed = sensor.gas, PUSHED if run.volumes_mL is None else np.array(run.volumes_mL) * ML
@@ -301,7 +301,7 @@ def _columns(
 
 
 def _number(name: str) -> int:
-    """A number for a name, so that a resin's specimens do not depend on which others are simulated."""
+    """Number for a name, so that a resin's specimens do not depend on which other resins are simulated."""
     return zlib.crc32(name.encode())
 
 

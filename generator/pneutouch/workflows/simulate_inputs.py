@@ -1,4 +1,4 @@
-"""The runs that are simulated, of a plan or as options request them, and the design of their campaign."""
+"""Runs to simulate, from a plan or from options, and the design of their campaign."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,18 +23,18 @@ PRESSED = ("steps", "saturation", "loop", "relaxation")
 """Kinds of run with a plate."""
 
 REPEATED = ("steps", "saturation")
-"""Kinds that are run as often as the user asks; the others once."""
+"""Kinds that are run as often as the user asks; others are run once."""
 
 
 class RequestedRuns(SimulationOptions):
-    """The options of a simulation; ``planned`` are the runs of a plan, which then states specimens and kinds."""
+    """Options of a simulation; ``planned`` are the runs of a plan, which then states specimens and kinds."""
 
     model: str = USUAL
     planned: list[CampaignRun] = Field(default=[])
 
 
 def driving_pressures_kPa(subject: SimulatedResin, options: RequestedRuns) -> list[float]:
-    """Driving pressures of a resin's runs, ascending."""
+    """Driving pressures of a resin's runs, ascending: the plan's, else the options', else the design's."""
     given_kPa = options.driving_pressures_kPa
     if options.planned:
         listed = [run for run in options.planned if run.resin == subject.name]
@@ -51,7 +51,7 @@ def sensors_of(resin: str, options: RequestedRuns) -> list[str]:
 
 
 def runs_of(sensor: str, subject: SimulatedResin, age: float, options: RequestedRuns) -> Iterator[CampaignRun]:
-    """Every run of one specimen at one age, with the file that it is written to."""
+    """Runs of one specimen at one age, with the files that they are written to."""
     suffix = "parquet" if options.parquet else "csv"
     for kind, at_kPa, number, volumes_mL in _keys(sensor, subject, age, options):
         stem = f"{file_name(label(sensor, age, options))}-{at_kPa:g}kPa-{kind}-{number}"
@@ -68,14 +68,14 @@ def runs_of(sensor: str, subject: SimulatedResin, age: float, options: Requested
 
 
 def label(sensor: str, age: float, options: RequestedRuns) -> str:
-    """Name of a specimen, with its age unless all are fresh."""
+    """Name of a specimen, with its age unless all specimens are fresh."""
     return sensor if options.ages_days == [0.0] else f"{sensor}-{age:g}d"
 
 
 def _keys(
     sensor: str, subject: SimulatedResin, age: float, options: RequestedRuns
 ) -> Iterator[tuple[str, float, int, list[float] | None]]:
-    """Kind, driving pressure in kPa, number, and the injected volumes that a plan states, of each run."""
+    """Kind, driving pressure in kPa, number, and injected volumes (None unless a plan states them) of each run."""
     if options.planned:
         for run in options.planned:
             if (run.sensor, run.age_days) == (sensor, age):
@@ -90,7 +90,7 @@ def _keys(
 
 
 def named_design(design: str | DesignSource, library: Library) -> tuple[str, dict[str, bytes]]:
-    """Name of the design in a campaign; for one given by a path also its copy for the campaign's folder."""
+    """Name of the design in a campaign file; for one given by path also its copy for the campaign's folder."""
     if isinstance(design, DesignSource):
         return design.name, {}
     plain, calibration = split_calibration(design, library)
@@ -103,15 +103,15 @@ def named_design(design: str | DesignSource, library: Library) -> tuple[str, dic
 
 
 _STATED = ("resins", "specimens", "driving_pressures_kPa", "runs", "kinds", "ages_days")
-"""Options that a plan gives."""
+"""Options that a plan determines."""
 
 
 def as_planned(
     design: str | DesignSource, changes: Changes | None, options: SimulationOptions, library: Library
 ) -> tuple[str | DesignSource, Changes | None, RequestedRuns]:
-    """Design, changes and options of a plan, where ``design`` is the folder of one; else as they are.
+    """Design, changes and options of the plan whose folder ``design`` is; else those given.
 
-    Raises InputError for options that the plan states, and for a plan that cannot be simulated.
+    Raises InputError for options that the plan determines, and for a plan that cannot be simulated.
     """
     if isinstance(design, DesignSource) or not exists(Path(design) / CAMPAIGN):
         return design, changes, RequestedRuns(**options.model_dump(exclude_none=True))
@@ -139,7 +139,7 @@ def as_planned(
 
 
 def _check_names(sensors: list[str], file: Path) -> None:
-    """Raise InputError where two sensors would have the same files."""
+    """Raise InputError if two sensors would have the same files."""
     known: dict[str, str] = {}
     for sensor in sensors:
         other = known.setdefault(file_name(sensor), sensor)

@@ -1,4 +1,4 @@
-"""A texture specimen: drawn, checked and built."""
+"""Texture specimen: drawn, checked and built."""
 
 from pneutouch.workflows.specimen.build import inputs
 from pneutouch.workflows.specimen.draw import ResolvedSpecimen, draw, load_specimen

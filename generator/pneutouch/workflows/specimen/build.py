@@ -1,6 +1,6 @@
-"""Build a specimen: 3MF, STL, GLB, STEP of exact shapes, drawing, print sheet, true patterns and manifest.
+"""Build of a specimen: 3MF, STL, GLB, STEP of exact shapes, drawing, print sheet, true patterns and manifest.
 
-The print rules on a specimen. Bodies that fill one another leave no open space, so two subjects are checked.
+The print rules check the bodies, and the block as one body, as bodies that fill one another leave no open space.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,19 +32,19 @@ from pneutouch.workflows.specimen.draw import ResolvedSpecimen, SpecimenBodies, 
 from pneutouch.workflows.specimen.sheet import drawing_svg, sheet, specimen_record
 
 OPEN = frozenset({"holes", "channels", "gaps", "hollows", "cleaning", "emboss", "matte"})
-"""Rules on open space: a space that one body leaves open another one fills, so they look at the block as a whole."""
+"""Rules on open space, applied to the block as a whole: a space that one body leaves open is filled by another."""
 
 BONDED = frozenset({"walls", "pins"})
-"""Rules on free-standing features: here they are bonded to the other resin, which the limits do not include."""
+"""Rules on free-standing features: here these are bonded to the other resin, which the limits do not consider."""
 
 _MOST_CHECKED = 40_000
-"""Number of triangles up to which a body is measured by rays; beyond it a minute and more."""
+"""Number of triangles up to which a body is measured by rays; more take a minute or longer."""
 
 _JOB = "specimen"
 
 
 def findings(drawn: SpecimenBodies) -> list[Finding]:
-    """The findings on the bodies, and on the block with its frame as one."""
+    """Findings on the bodies, and on the block as one body with its frame, by rank."""
     alone = [
         _bonded(finding)
         for finding in check(bodies_of(drawn))
@@ -55,7 +55,7 @@ def findings(drawn: SpecimenBodies) -> list[Finding]:
 
 
 def bodies_of(drawn: SpecimenBodies) -> PrintSubject:
-    """The bodies as one job, with the faces that they must share; those too large to be measured left out."""
+    """Subject of the bodies as one job, with the faces that they must share; without those too large to measure."""
     measured = [body for body in drawn.bodies if len(body.triangles) <= _MOST_CHECKED]
     names = {body.name for body in measured}
     joints = (_joint(drawn),) if {"matrix", "inclusion"} <= names else ()
@@ -63,7 +63,7 @@ def bodies_of(drawn: SpecimenBodies) -> PrintSubject:
 
 
 def block_of(drawn: SpecimenBodies) -> PrintSubject:
-    """The block as one body, and the frame."""
+    """Subject of the block as one body, and the frame."""
     rest = [body for body in drawn.bodies if body.name == "frame"]
     block = _box(drawn.scene.block)
     whole = replace(drawn.bodies[0], name="block", role="block", vertices=block[0], triangles=block[1])
@@ -81,7 +81,7 @@ def _item(drawn: SpecimenBodies, body: Body) -> PrintItem:
 
 
 def _joint(drawn: SpecimenBodies) -> Joint:
-    """Joint of matrix and inclusion: the inclusion's surface without its footprints on the sides of the block."""
+    """Joint of matrix and inclusion: the inclusion's surface without its faces on the sides of the block."""
     inclusion = drawn.bodies[1]
     corners, block = inclusion.corners, drawn.scene.block
     ends = np.array([block.low, block.high])
@@ -93,7 +93,7 @@ def _joint(drawn: SpecimenBodies) -> Joint:
 
 
 def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
-    """True if an overlap is the kernel's rounding on coincident facets: the faces are the same by construction."""
+    """True if a finding is an overlap due to the kernel's rounding on faces that coincide by construction."""
     excess = finding.excess
     if finding.rule != "contact faces" or excess is None or excess.unit != "mm3":
         return False
@@ -101,7 +101,7 @@ def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
 
 
 def _bonded(finding: Finding) -> Finding:
-    """The finding, as a warning for a thin place of a bonded body: the limit is of free-standing features."""
+    """The finding, as a warning for a thin place of a bonded body: the limit is for free-standing features."""
     if finding.rule not in BONDED or finding.body == "frame":
         return finding
     severity = "warning" if finding.severity == "error" else finding.severity
@@ -137,7 +137,7 @@ def _box(box: Box) -> tuple[Array, Indices]:
 StepReport = Callable[[str], None]
 
 STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
-"""The steps that a build reports, in order."""
+"""Steps that a build reports, in order."""
 
 
 def build_specimen(
@@ -149,12 +149,12 @@ def build_specimen(
     *,
     called: str | None = None,
 ) -> tuple[Path, list[Finding]]:
-    """Write everything a specimen, by name or path, gives into ``out/<name>/``; returns that folder and the findings.
+    """Write all files of a specimen, given by name or path, into ``out/<name>/``; return that folder and the findings.
 
-    ``called`` is the name of the folder and its files where it is not the specimen's own.
+    ``called`` names the folder and its files in place of the specimen's own name.
 
-    Raises InputError if that is impossible, and RuleBrokenError, with nothing written, if a rule is broken. The same
-    input gives the same bytes.
+    Raises InputError for what cannot be drawn or written, and RuleBrokenError, with nothing written, if a rule is
+    broken. The same input gives the same bytes.
     """
     scene = load_specimen(name, changes, library)
     scene = scene if called is None else replace(scene, name=plain_name(called))
@@ -187,7 +187,7 @@ def build_specimen(
 def check_specimen(
     name: str, changes: Changes | None = None, library: Library | None = None, *, deep: bool = False
 ) -> list[Finding]:
-    """The findings on a specimen; with ``deep`` those of pymeshlab too. Raises InputError if that is impossible."""
+    """Findings on a specimen; with ``deep`` those of pymeshlab too. Raises InputError for what cannot be drawn."""
     drawn = draw(load_specimen(name, changes, library))
     checked = findings(drawn)
     if deep:
@@ -198,7 +198,7 @@ def check_specimen(
 
 
 def inputs(scene: ResolvedSpecimen) -> Mapping[str, Any]:
-    """Everything that the result depends on, as data."""
+    """All that the result depends on, as data."""
     return {
         "specimen": scene.specimen.model_dump(mode="json"),
         "matrix": scene.matrix.model_dump(mode="json"),
@@ -209,7 +209,7 @@ def inputs(scene: ResolvedSpecimen) -> Mapping[str, Any]:
 
 
 def solids(drawn: SpecimenBodies) -> tuple[Solid, ...]:
-    """The exact shapes of block and patterns in the block's frame; none where a pattern has no exact shape."""
+    """Exact shapes of block, patterns and frame in the block's coordinates; none if a pattern has no exact shape."""
     bars = [solid for pattern in drawn.patterns for solid in pattern.solids]
     if not all(pattern.solids for pattern in drawn.patterns):
         return ()
@@ -221,7 +221,7 @@ def solids(drawn: SpecimenBodies) -> tuple[Solid, ...]:
 
 
 def _frame_solid(drawn: SpecimenBodies) -> tuple[Solid, ...]:
-    """The frame without its letters."""
+    """Exact shape of the frame, without its letters; none without a frame."""
     frame, material, block = drawn.scene.specimen.frame, drawn.scene.frame, drawn.scene.block
     if frame is None or material is None:
         return ()
@@ -235,7 +235,7 @@ def _frame_solid(drawn: SpecimenBodies) -> tuple[Solid, ...]:
 def _files(
     drawn: SpecimenBodies, checked: list[Finding], whole: str, progress: StepReport
 ) -> tuple[dict[str, bytes], dict[str, str]]:
-    """The files, and those left out with the reasons; ``whole`` is the hash of the inputs."""
+    """Files by path, and those left out with the reasons; ``whole`` is the hash of the inputs."""
     scene, bodies = drawn.scene, drawn.printed
     progress("3MF")
     files = {f"{scene.name}.3mf": threemf(scene.name, bodies, _metadata(drawn, whole))}

@@ -1,4 +1,4 @@
-"""A specimen drawn: its patterns, and the two or three closed bodies that share their faces."""
+"""Drawing of a specimen: its patterns, and the two or three closed bodies that share their faces."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,7 +25,7 @@ from pneutouch.spec.values import name_of
 
 @dataclass(frozen=True, slots=True)
 class ResolvedSpecimen:
-    """All that a specimen names. ``where`` is the file as the user gave it, for messages."""
+    """A specimen with the profiles that it names. ``where`` is the file as the user gave it, for messages."""
 
     name: str
     where: str
@@ -38,7 +38,7 @@ class ResolvedSpecimen:
 
     @property
     def block(self) -> Box:
-        """The block in mm: x along the path, z up; its bottom is z = 0."""
+        """Block in mm: x along the path, z up, its bottom at z = 0."""
         block = self.specimen.block
         return Box((0.0, 0.0, 0.0), (block.length_mm, block.width_mm, block.height_mm))
 
@@ -49,7 +49,7 @@ class ResolvedSpecimen:
 
     @property
     def context(self) -> PatternContext:
-        """Surroundings in which patterns are drawn."""
+        """Context in which patterns are drawn."""
         speed = self.specimen.scan.speed_mm_per_s
         return PatternContext(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
 
@@ -98,12 +98,12 @@ def _resolved(name: str, where: str, specimen: Specimen, library: Library) -> Re
 
 
 _MARK = 1.2
-"""Letters are cut this many times as deep as the printer's recommended detail."""
+"""Depth of cut letters, as a multiple of the printer's recommended detail."""
 
 
 @dataclass(frozen=True)
 class SpecimenBodies:
-    """The patterns in the order of the file, and the bodies in the block's frame, mm: matrix, inclusion, frame."""
+    """Patterns in the order of the file, and bodies (matrix, inclusion, frame) in the block's coordinates, mm."""
 
     scene: ResolvedSpecimen
     patterns: tuple[PatternGeometry, ...]
@@ -111,7 +111,7 @@ class SpecimenBodies:
 
     @cached_property
     def offset(self) -> Array:
-        """Shift (3,) in mm to the print frame, in which all coordinates are positive."""
+        """Shift (3,) in mm to the print frame, in which no coordinate is negative."""
         shift: Array = -np.min([body.bounds[0] for body in self.bodies], axis=0) + 0.0
         return shift
 
@@ -124,7 +124,7 @@ class SpecimenBodies:
 def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
     """Draw every layer and divide the block among the bodies.
 
-    Raises InputError for layers that are impossible or meet one another, ComputationError where a body is not closed.
+    Raises InputError for impossible layers, or layers that meet, ComputationError if a body does not come out closed.
     """
     patterns = _patterns(scene)
     whole = joined([pattern.mesh for pattern in patterns])
@@ -177,7 +177,7 @@ def _span(corner: tuple[float, float, float]) -> str:
 
 
 def _frame(scene: ResolvedSpecimen, frame: FramePlate, material: Material, bodies: list[Mesh]) -> Mesh:
-    """The plate, with its letters between the block and the near edge."""
+    """Mesh of the frame, with letters between the block and the near edge. Raises InputError for a bad size."""
     where, smallest = scene.where, scene.printer.smallest
     land = 0.5 * (frame.border_mm - frame.hole_diameter_mm)
     least = smallest.wall(material.kind).least or smallest.wall(material.kind).recommended

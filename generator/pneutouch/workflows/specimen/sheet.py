@@ -1,4 +1,4 @@
-"""The print sheet of a specimen, its drawing on one page, and its true patterns, which a scan is compared with."""
+"""Print sheet of a specimen, its drawing on one page, and the record of its true patterns, to compare scans with."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DECIMALS = 6
 
 
 def specimen_record(drawn: SpecimenBodies) -> SpecimenRecord:
-    """Block, path and layers in the block's frame."""
+    """Record of block, path and layers, in the block's frame of reference."""
     scene, block = drawn.scene, drawn.scene.specimen.block
     volumes = {body.name: body.volume for body in drawn.bodies}
     return SpecimenRecord(
@@ -45,12 +45,12 @@ def specimen_record(drawn: SpecimenBodies) -> SpecimenRecord:
 
 
 def title(layer: Layer, number: int) -> str:
-    """Name of a layer as given, else its number."""
+    """Name of a layer; its number, from 1, if it has none."""
     return layer.name or f"layer {number + 1}"
 
 
 def frequencies(drawn: SpecimenBodies, pattern: PatternGeometry) -> list[float]:
-    """Frequencies in Hz of a pattern at the speed of the scan."""
+    """Frequencies in Hz of a pattern's pitches at the speed of the scan."""
     return [drawn.scene.specimen.scan.speed_mm_per_s / pitch for pitch in pattern.pitches]
 
 
@@ -78,7 +78,7 @@ def _rounded(value: float) -> float:
 
 
 def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator, who chooses resins at the machine; ``left_out``: files not written, and why."""
+    """Print sheet as Markdown, for the operator, who chooses resins; ``left_out``: files not written, and why."""
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
@@ -155,14 +155,14 @@ _WIDTH = 180.0
 """Width of the drawing, mm."""
 
 _ASIDE = 0.011
-"""The section is taken this far (mm) off the middle, so that it runs along no face of a lattice."""
+"""Distance of the section from the middle, mm, so that it runs along no face of a lattice."""
 
 _LINE = 5.0
 """Height of a line of the table, mm."""
 
 
 def drawing_svg(drawn: SpecimenBodies) -> bytes:
-    """SVG of the section; the same bytes every time."""
+    """SVG of the section along the path and a table of the layers; the same bytes every time."""
     box, frame = drawn.scene.block, drawn.scene.specimen.frame
     under = 0.0 if frame is None else frame.thickness_mm
     aside = 0.0 if frame is None else frame.border_mm
@@ -228,14 +228,14 @@ def _cut(ax: Axes, pattern: PatternGeometry, colour: str) -> None:
 
 
 def section(mesh: Mesh, y: float) -> list[Any]:
-    """Loops (n, 2) in (x, z), mm, of a closed mesh cut at ``y``."""
+    """Loops, (n, 2) each in (x, z), mm, of a closed mesh cut at ``y``."""
     # x, z and y as the kernel's x, y and z: the swap mirrors, so the triangles are turned round.
     whole = manifold_of(mesh.vertices[:, [0, 2, 1]], mesh.triangles[:, ::-1])
     return list(whole.slice(y).to_polygons())
 
 
 def _label(ax: Axes, number: int, pattern: PatternGeometry) -> None:
-    """The layer's number at its end, its first pitch as a dimension, and its depth."""
+    """Draw the layer's number in its middle, and its first pitch as a dimension if that fits."""
     low, high = pattern.box.low, pattern.box.high
     middle = 0.5 * (low[2] + high[2])
     ax.text(
@@ -266,7 +266,7 @@ def _label(ax: Axes, number: int, pattern: PatternGeometry) -> None:
 
 
 def _table(ax: Axes, drawn: SpecimenBodies) -> None:
-    """The layers in words, under the section."""
+    """Draw a table of the layers under the section."""
     ax.set_axis_off()
     ax.set_xlim(0, 1)
     rows, top = len(drawn.patterns), drawn.scene.block.high[2]

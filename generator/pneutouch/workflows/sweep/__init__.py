@@ -1,4 +1,4 @@
-"""Many designs to one dataset: planned, computed in pieces that survive a kill, written whole or not at all."""
+"""Sweep: many designs into one dataset, computed in parts that survive an abort, written whole or not at all."""
 
 from pneutouch.workflows.sweep.execute import SweepResult, sweep
 from pneutouch.workflows.sweep.grid import SweepAxis, SweepPlan, plan_of_file, plan_of_flags, plan_of_grid
