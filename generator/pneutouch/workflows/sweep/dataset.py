@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 PRESSURE = "driving_pressure_kPa"
-"""Name of the dimension of driving pressures, which holds those of all points."""
+"""Name of the dimension of driving pressures, which holds all that any point has."""
 
 MOST_BYTES = 2**30
 """Largest size of a dataset, which is in memory as a whole: some million points."""
@@ -45,11 +45,10 @@ _CONTENT_HASH = "content_hash"
 
 
 def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
-    """The dataset of a finished sweep: ``records`` holds every point.
+    """Dataset of a finished sweep; ``records`` has every point by its number.
 
-    Dimensions are those of the grid, or ``point``, and the driving pressure. Missing numbers are NaN, missing texts
-    empty.
-    """
+    Dimensions are those of the grid, or ``point``, and the driving pressure. Missing numbers are NaN, missing texts are
+    empty."""
     import xarray
 
     plan = study.plan
@@ -78,7 +77,7 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
 
 
 def _content_hash(content: xarray.Dataset) -> str:
-    """SHA-256 of names, dimensions, values and attributes, so that a damaged dataset is never reported."""
+    """SHA-256 of names, dimensions, values and attributes, by which a damaged dataset is recognised."""
     digest = hashlib.sha256()
     for name in sorted(map(str, content.variables)):
         column = content[name]
@@ -97,12 +96,12 @@ def _content_hash(content: xarray.Dataset) -> str:
 
 
 def netcdf(content: xarray.Dataset) -> bytes:
-    """The dataset as a netCDF file."""
+    """Bytes of the dataset as a netCDF file."""
     return bytes(content.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))
 
 
 def stored_fingerprint(path: Path) -> str:
-    """Fingerprint of a finished sweep's file, read whole. Raises InputError if it is no dataset, or damaged."""
+    """Fingerprint of a finished sweep, its file read whole. Raises InputError if it is no dataset, or damaged."""
     import xarray
 
     _check_size(path)
@@ -122,7 +121,7 @@ def stored_fingerprint(path: Path) -> str:
 
 
 def stored_dataset(path: Path) -> xarray.Dataset:
-    """A finished sweep's dataset. Raises InputError if it is not as it was written."""
+    """Dataset of a finished sweep. Raises InputError if it is not as it was written."""
     import xarray
 
     _check_size(path)
@@ -150,7 +149,7 @@ def _check_size(path: Path) -> None:
 def _by_pressure(
     requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
 ) -> list[list[dict[str, Any]]]:
-    """States of every point, one for each pressure of the dimension; empty if a point does not have it."""
+    """States of every point, one for each pressure of the dimension; empty where a point does not have the pressure."""
     rows = []
     for index, pressures_of in enumerate(requested_kPa):
         states = dict(zip(pressures_of, records[index]["states"], strict=True))
@@ -171,7 +170,7 @@ Coordinate = tuple[str, Any, dict[str, str]]
 
 
 def _coordinates(study: SweepStudy) -> dict[str, Coordinate]:
-    """Values of the varied fields: along their own dimension in a grid, along ``point`` in a list."""
+    """Values of the varied fields: in a grid along a dimension of their own, in a list along ``point``."""
     plan = study.plan
     if plan.axes:
         return {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
@@ -188,7 +187,7 @@ def _coordinates(study: SweepStudy) -> dict[str, Coordinate]:
 
 
 def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
-    """Values of one field, with unit and help of its declaration."""
+    """Values of one field as an array, with unit and help of the field's declaration."""
     table_name, field = key.split(".")
     table = table_of(DesignFile, table_name)
     assert table is not None
@@ -223,7 +222,7 @@ _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 
 def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
-    """A row for each state, in the dataset's order: swept fields, driving pressure, figures; missing ones are None."""
+    """A row for each state, in the dataset's order: swept fields, driving pressure, figures; None if missing."""
     dims = list(content["status"].dims)
     names = [v.name for v in (*STATE, *POINT)]
     fields = [str(name) for name in content.coords if name not in (*dims, PRESSURE)]
@@ -239,13 +238,13 @@ def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """A plain Python number or text; None for NaN."""
+    """The value as a plain Python number or text; None for NaN."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and np.isnan(value) else value
 
 
 def table_csv(rows: list[dict[str, Any]]) -> bytes:
-    """The rows as a CSV file; numbers with twelve digits, as the dataset holds them."""
+    """Rows as a CSV file; numbers with twelve digits."""
     head = list(rows[0]) if rows else []
     return csv_bytes(head, [[_cell(value) for value in row.values()] for row in rows])
 
@@ -255,9 +254,9 @@ def _cell(value: Any) -> Any:
 
 
 def check_companions(out: Path, plan: SweepPlan) -> None:
-    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace a foreign file.
+    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace another file.
 
-    Where there is no dataset, a file in the place of table or picture was not written by a sweep.
+    If there is no dataset, a file in the place of table or picture was not written by a sweep.
     """
     check_output(out)
     if out.exists():
@@ -271,7 +270,7 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
 
 
 def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
-    """Write table and pictures next to a dataset; returns rows and files. Raises InputError if it is not as written."""
+    """Write table and pictures next to a dataset; return rows and paths. Raises InputError if it is not as written."""
     from pneutouch.report.swept import pictures
 
     content = stored_dataset(out)
@@ -304,7 +303,7 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
 
 
 def _gridded(content: xarray.Dataset) -> xarray.Dataset:
-    """A list of points over its field, if it has a single one without repeats; else over the number of the point."""
+    """A list of points over its varied field, if it is the only one and without repeats; else over their number."""
     fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
     kept = content[[SENSITIVITY_KEY, *_ENDS]]
     places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
@@ -326,9 +325,10 @@ def _axis(content: xarray.Dataset, name: str) -> Any:
 
 
 def write_maps(content: xarray.Dataset, folder: Path) -> list[Path]:
-    """Write the contour maps of a dataset into a folder, SVG and PNG; returns the files.
+    """Write the contour maps of a dataset into a folder, as SVG and PNG; return their paths.
 
-    Raises InputError for a dataset without two dense fields of numbers, and a folder that cannot be written.
+    Raises InputError for a dataset without two fields that are dense (`is_dense`), and for a folder that cannot be
+    written.
     """
     from pneutouch.report.swept import contour_map
 
@@ -341,9 +341,9 @@ def write_maps(content: xarray.Dataset, folder: Path) -> list[Path]:
 
 
 def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
-    """The maps of every figure over the first two dense fields, by the names of their files.
+    """Maps of every figure over the first two dense fields, by the names of their files.
 
-    Values of a third field, four at most, have maps of their own; every other field stays at its middle value.
+    Up to four values of a third field have maps of their own; every other field is at its middle value.
     """
     from pneutouch.report.swept import SweptMap, spread_places
 
@@ -369,7 +369,7 @@ def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
 
 
 def _map_panels(content: xarray.Dataset, variable: str) -> list[MapPanel]:
-    """A figure at each driving pressure, four at most; one panel for a figure that does not depend on it."""
+    """Panels of a figure, one for each of up to four driving pressures; a single one if it does not depend on it."""
     from pneutouch.report.swept import MapPanel, spread_places
 
     values, messages, axis = content[variable].values, content["message"].values, _axis(content, PRESSURE)

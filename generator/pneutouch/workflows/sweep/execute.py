@@ -1,4 +1,4 @@
-"""Run a sweep: resolve, go on where it stopped, compute, write the dataset, clear up."""
+"""Running of a sweep: resolve it, continue where it stopped, compute, write the dataset, clear up."""
 
 import contextlib
 from collections import Counter
@@ -16,13 +16,13 @@ from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, un
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 
 Progress = Callable[[int, int], None]
-"""Called with the number of points done and of all points."""
+"""Called with the number of points done and the number of all points."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepResult:
-    """A finished sweep: its file, how many points it has, how many of them were ``computed`` by this call, and how
-    many states are ok, refused or failed."""
+    """A finished sweep: path of its dataset, number of points, number of those ``computed`` by this call, number of
+    states that are ok, refused or failed, and hash of the inputs."""
 
     path: Path
     points: int
@@ -48,13 +48,13 @@ def sweep(
     progress: Progress = lambda done, total: None,
     library: Library | None = None,
 ) -> SweepResult:
-    """Compute every point of a plan and write the dataset to ``out``; returns a record of the work.
+    """Compute every point of a plan and write the dataset to ``out``; return a summary.
 
-    Progress is kept in ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, goes on there and
-    ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
+    Progress is kept in a folder, ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, continues from
+    there and ends with the same bytes. ``fresh`` discards progress and replaces a dataset that is there.
 
-    Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept. A
-    KeyboardInterrupt passes with a note of the progress that is kept.
+    Raises InputError before any work starts, ComputationError if it stops half way, with its progress kept. A
+    KeyboardInterrupt is passed on with a note on the progress that is kept.
     """
     if machines.workers is not None and machines.workers < 1:
         raise InputError("must be at least 1", key="workers", value=machines.workers)
@@ -76,7 +76,7 @@ def sweep(
 
 
 def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]:
-    """Records that hold a state for every driving pressure of their point; the points of others are computed again."""
+    """Records with a state for every driving pressure of their point; points of other records are computed again."""
     return {
         index: record
         for index, record in records.items()
@@ -85,7 +85,7 @@ def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]
 
 
 def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
-    """True if ``out`` is this sweep's dataset already. Raises InputError if it is something to be kept."""
+    """True if ``out`` is already this sweep's dataset and is to be kept. Raises InputError if it is another sweep's."""
     if not out.exists():
         return False
     stored = stored_fingerprint(out)
@@ -108,7 +108,7 @@ def _compute(
     records: dict[int, Record],
     progress: Progress,
 ) -> None:
-    """Fill ``records`` with every point, each kept in the journal as soon as it is done."""
+    """Fill ``records`` with every point; each chunk is kept in the journal as soon as it is done."""
     total = study.plan.count
     progress(len(records), total)
     with contextlib.closing(_batches(study, machines, folder, records)) as batches:
@@ -121,7 +121,7 @@ def _compute(
 
 @contextlib.contextmanager
 def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
-    """Report how far the work came where anything stops it, and that it goes on from there."""
+    """Context that adds, to anything that stops the work, how far it came and that it can be continued."""
 
     def kept() -> str:
         return f"{len(records)} of {total} points are done and kept in {folder.path}"
@@ -143,7 +143,7 @@ def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iter
 def _batches(
     study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, Record]
 ) -> Generator[list[Record], None, None]:
-    """Records of the points that are missing, as they are done."""
+    """Records of the missing points, chunk by chunk, as they are done."""
     pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])
     workers = min(machines.workers or cores(), len(pieces))
     if machines.scheduler is not None:

@@ -1,4 +1,4 @@
-"""A sweep's plan, from a file or from flags: the varied fields of a design, their values, and the points."""
+"""Plan of a sweep, from a file or from flags: the varied fields of a design, their values, and the points."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ from pneutouch.spec.tray import MAX_VALUES, parse_over, spread
 from pneutouch.spec.values import file_name, is_finite, name_of
 
 PRESSURES = "pneumatics.driving_pressures_kPa"
-"""The one field that is a dimension of every sweep: a prediction gives all its states at once."""
+"""The one field that is a dimension of every sweep, because a prediction gives all its states at once."""
 
 MAX_POINTS = 100_000
 
@@ -32,14 +32,14 @@ Settings = dict[str, Value]
 
 @dataclass(frozen=True, slots=True)
 class SweepAxis:
-    """One field of the design, ``table.key``, and the values it takes."""
+    """One field of the design, ``table.key``, and the values that it takes."""
 
     key: str
     values: tuple[float | int | str | bool, ...]
 
     @property
     def name(self) -> str:
-        """Name of the dimension: ``membrane.material`` becomes ``membrane_material``, a name in any language."""
+        """Name of the dimension: ``membrane.material`` becomes ``membrane_material``, an identifier in any language."""
         return self.key.replace(".", "_")
 
 
@@ -61,7 +61,7 @@ class SweepPlan:
     clamp: str = "base"
 
     def __post_init__(self) -> None:
-        """Raise InputError where the plan contradicts itself or names what does not exist."""
+        """Raise InputError if the plan contradicts itself or names what does not exist."""
         for option, value, known in (
             ("model", self.model, MODEL_CHOICES),
             ("closure", self.closure, CLOSURES),
@@ -99,12 +99,12 @@ class SweepPlan:
 
     @property
     def varied(self) -> tuple[str, ...]:
-        """The fields that differ between points, in the order written."""
+        """Fields that differ between points, in the order written."""
         keys = [axis.key for axis in self.axes] or [key for point in self.points for key in point]
         return tuple(dict.fromkeys(keys))
 
     def position(self, index: int) -> tuple[int, ...]:
-        """Place of a point along every dimension; the last varies fastest."""
+        """Index of a point along every dimension; the last dimension varies fastest."""
         places = []
         for length in reversed(self.shape):
             index, here = divmod(index, length)
@@ -112,7 +112,7 @@ class SweepPlan:
         return tuple(reversed(places))
 
     def overrides(self, index: int) -> Settings:
-        """All settings of a point, including those common to all points."""
+        """All settings of the point ``index``, including those common to all points."""
         if self.points:
             return {**self.settings, **self.points[index]}
         place = self.position(index)
@@ -134,14 +134,14 @@ def _check_key(where: str, key: str) -> None:
 
 
 def _field(key: str) -> FieldInfo | None:
-    """The declaration of ``table.key``; None if there is none."""
+    """Declaration of ``table.key``; None if there is none."""
     table_name, _, name = key.partition(".")
     table = table_of(DesignFile, table_name)
     return None if table is None else table.model_fields.get(name)
 
 
 def takes_flags(key: str) -> bool:
-    """True if the field is true or false."""
+    """True if the field is a boolean."""
     field = _field(key)
     return field is not None and field.annotation is bool
 
@@ -153,23 +153,23 @@ def takes_infinity(key: str) -> bool:
 
 
 def takes_words(key: str) -> bool:
-    """True if the field is one of a few words, or true or false."""
+    """True if the field is one of a few words, or a boolean."""
     field = _field(key)
     return field is not None and (field.annotation is bool or get_origin(field.annotation) is Literal)
 
 
 DENSE = 4
-"""Fewest values of a field that a map is drawn over."""
+"""Least number of values of a field over which a map is drawn."""
 
 
 def is_dense(values: Sequence[Any]) -> bool:
-    """True for values that a map can be drawn over: enough numbers, all of them finite."""
+    """True for values over which a map can be drawn: at least `DENSE` numbers, all of them finite."""
     numbers = all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values)
     return numbers and len(values) >= DENSE
 
 
 def check_dense(axes: Mapping[str, Sequence[Any]]) -> tuple[str, str]:
-    """The fields of a map, the first two dense ones of a grid. Raises InputError without two."""
+    """Names of the fields of a map: the first two dense ones of a grid. Raises InputError for fewer."""
     dense = [name for name, values in axes.items() if is_dense(values)]
     if len(dense) < 2:
         lengths = ", ".join(f"{name} with {len(values)}" for name, values in axes.items()) or "a list of points"
@@ -185,7 +185,7 @@ _RANGE = {"from", "to", "count"}
 
 
 def plan_of_file(path: Path, changes: Changes | None = None, **options: str | None) -> SweepPlan:
-    """A sweep file, overridden by ``changes`` and ``options`` (model, closure, clamp). Raises InputError at its key."""
+    """Plan of a sweep file; ``changes`` and ``options`` (model, closure, clamp) override it. Raises InputError."""
     where, content = str(path), read_given(path, "give the path of a sweep file; a design to vary is given as `design`")
     for key in content:
         if key not in KEYS:
@@ -210,7 +210,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
 
 
 def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
-    """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
+    """Plan of a grid from texts ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
     grid = {key: _unwrapped(values) for key, values in parse_over(over).items()}
     return plan_of_grid(design, grid, changes, "over", **options)
 
@@ -222,7 +222,7 @@ def plan_of_grid(
     where: str = "over",
     **options: str | None,
 ) -> SweepPlan:
-    """A grid over each ``table.key``: a list, or ``from``, ``to`` and ``count``; ``where`` is the file in messages."""
+    """Plan of a grid over each ``table.key``: a list, or from, to and count; ``where`` is the file in messages."""
     values = {key: _values(where, key, entry) for key, entry in grid.items()}
     words = {key: value for key, value in options.items() if value is not None}
     name = design.name if isinstance(design, DesignSource) else file_name(Path(design).stem)
@@ -238,7 +238,7 @@ def _plan(
     points: tuple[Settings, ...],
     words: dict[str, str],
 ) -> SweepPlan:
-    """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
+    """The plan; driving pressures of a grid become those of every point, because they are a dimension already."""
     if PRESSURES in grid:
         if PRESSURES in fixed:
             raise InputError("set for all points and varied too", file=where, key=PRESSURES, value=fixed[PRESSURES])
@@ -250,7 +250,7 @@ def _plan(
 
 
 def _values(where: str, key: str, given: Any) -> list[Any]:
-    """The values of one axis: a list, or a table ``{from, to, count}``."""
+    """Values of one axis, from a list or a table ``{from, to, count}``. Raises InputError for a value twice."""
     if isinstance(given, dict):
         if set(given) != _RANGE:
             raise InputError("a range has the keys from, to and count", file=where, key=key, value=given)
@@ -268,14 +268,14 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
 
 
 def _unwrapped(values: list[Any]) -> list[Any]:
-    """Values of one axis; a sweep varies scalars, so that a single list in brackets is the list of values."""
+    """Values of one axis; a single list in brackets is the list of values, because a sweep varies scalars."""
     return values[0] if len(values) == 1 and isinstance(values[0], list) else values
 
 
 def _value(where: str, key: str, given: Any, before: str = "") -> Value:
-    """The value of one field at one point: a number, a text, true or false, or a list of numbers or of such lists.
+    """Value of one field at one point: a number, a text, a boolean, or a list of numbers or of such lists.
 
-    ``before`` stands before the key in messages.
+    ``before`` is put before the key in messages.
     """
     return _entries(where, key, given, f"{before}{key}")
 
@@ -287,7 +287,7 @@ def _entries(where: str, key: str, given: Any, label: str) -> Value:
 
 
 def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str | bool:
-    """A value as a journal in JSON can hold it: infinity, where the field takes it, is the text "inf"."""
+    """A value that JSON can hold: infinity, if the field takes it, is the text "inf". Raises InputError for others."""
     allowed = takes_flags(key) if isinstance(given, bool) else isinstance(given, str) or is_finite(given)
     if given == math.inf and takes_infinity(key):
         return "inf"
@@ -297,7 +297,7 @@ def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str |
 
 
 def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
-    """Keys as ``table.key``, from keys in quotes and from dotted keys, of which TOML makes tables."""
+    """Keys as ``table.key``, from quoted keys, or from dotted keys, which TOML turns into tables."""
     if not isinstance(given, dict):
         raise InputError(f"{table} = {shown(given)}: must be a table", file=where)
     flat: dict[str, Any] = {}

@@ -1,8 +1,7 @@
-"""The journal: finished points on disk, one checksummed line a chunk, so that a kill loses at most the line it tore.
+"""Journal of a sweep: finished points on disk, one line with checksum a chunk, so that a kill loses at most one line.
 
-A line is ``checksum json``. What does not agree with its checksum was torn by a kill or damaged since: it is dropped
-and its points are computed again.
-"""
+A line is ``checksum json``. One that does not agree with its checksum was cut off by a kill or damaged later: it is
+dropped, and its points are computed again."""
 
 from __future__ import annotations
 
@@ -26,17 +25,18 @@ _CHECKSUM_DIGITS = 16
 
 
 MOST_BYTES = 2**30
-"""Largest size of a journal: some million points."""
+"""Greatest size of a journal: some million points."""
 
 
 class Journal:
-    """The finished points of the sweep ``fingerprint`` in the file ``path``."""
+    """Finished points, in the file ``path``, of the sweep with a ``fingerprint``."""
 
     def __init__(self, path: Path, fingerprint: str) -> None:
         self.path, self.fingerprint = path, fingerprint
 
     def read(self) -> dict[int, Record]:
-        """Finished points; damaged lines are cut out of the file. Raises InputError for another sweep's journal."""
+        """Finished points by number; damaged lines are removed from the file. Raises InputError for another sweep's
+        journal."""
         if not self.path.exists():
             return {}
         lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")
@@ -65,17 +65,16 @@ class Journal:
             os.fsync(file.fileno())
 
     def _rewrite(self, lines: list[bytes]) -> None:
-        """Rewrite the file with only these lines: a line appended to a torn one would be lost with it."""
+        """Rewrite the file with only these lines, because a line appended to a cut one would be lost with it."""
         fresh = self.path.with_name(f"{self.path.name}.new")
         replace_whole(fresh, self.path, b"".join(line + b"\n" for line in lines))
 
 
 def replace_whole(fresh: Path, target: Path, content: bytes) -> None:
-    """Write ``content`` to ``fresh``, on the disk, then rename it to ``target``: never half a file under that name.
+    """Write ``content`` to ``fresh``, synced to disk, then rename it to ``target``, which so is never half a file.
 
     For files of the locked work folder, where a kill leaves ``fresh`` under a name that the next sweep clears. Raises
-    OSError, so that a sweep can report which points are kept.
-    """
+    OSError, so that a sweep can report which points are kept."""
     write_synced(fresh, content)
     fresh.replace(target)
 
@@ -85,14 +84,14 @@ def _checksum(text: bytes) -> bytes:
 
 
 class _Entry(NamedTuple):
-    """A line of the journal: the fingerprint of its sweep, and finished points."""
+    """A line of the journal: fingerprint of the sweep, and finished points."""
 
     sweep: str
     records: list[Record]
 
 
 def _entry(line: bytes) -> _Entry | None:
-    """A line's entry, or None if it does not agree with its checksum or is of another form."""
+    """Entry of a line; None if the line does not agree with its checksum or has another form."""
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None
@@ -104,7 +103,7 @@ def _entry(line: bytes) -> _Entry | None:
 
 
 def _is_entry(content: Any) -> bool:
-    """True if a line is one that `Journal.append` writes; a checksum alone proves nothing."""
+    """True if the content of a line is such as `Journal.append` writes; a checksum alone does not prove it."""
     if not isinstance(content, dict) or not isinstance(content.get("sweep"), str):
         return False
     records = content.get("records")
@@ -123,13 +122,13 @@ _WRITTEN = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
 
 
 class WorkFolder:
-    """``OUT.parts/``, held by a lock from entering to leaving the context.
+    """Folder ``OUT.parts/``, locked from entering to leaving the context.
 
-    The lock is the kernel's and ends with its process however that ends; the number in the file is for the message.
-    """
+    The lock is the kernel's and ends with its process, however that ends; the process number in the file is for
+    messages."""
 
     def __init__(self, out: Path) -> None:
-        """Raises InputError if ``out`` cannot be a dataset's file."""
+        """Raises InputError if ``out`` cannot be the file of a dataset."""
         check_output(out)
         self.out, self.path = out, out.with_name(f"{out.name}.parts")
         self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
@@ -137,7 +136,8 @@ class WorkFolder:
         self._made: list[Path] = []
 
     def __enter__(self) -> WorkFolder:
-        """Make and lock the folder. Raises InputError if it cannot be, or is held, or holds foreign files."""
+        """Make and lock the folder. Raises InputError if that fails, another process holds it, or it has other
+        files."""
         try:
             with uninterrupted():
                 self._enter()
@@ -174,11 +174,11 @@ class WorkFolder:
         self._lock.close()
 
     def restart(self) -> None:
-        """Forget all progress."""
+        """Delete all progress."""
         self.journal.unlink(missing_ok=True)
 
     def finish(self, content: bytes | None) -> None:
-        """Put the dataset in its place, whole, then remove the folder; None leaves the dataset that is there."""
+        """Put the dataset in its place, whole, and delete the progress; None leaves the dataset that is there."""
         with uninterrupted():
             self._put(content)
 
@@ -197,7 +197,7 @@ class WorkFolder:
                 folder.rmdir()
 
     def _take(self) -> FileIO | None:
-        """The lock, or None if its file was removed by a sweep that ended between opening and locking it."""
+        """The lock; None if its file was removed, by a sweep that ended, between opening and locking it."""
         try:
             file = FileIO(os.open(self.path / _LOCK, os.O_RDWR | os.O_CREAT, 0o644), "r+")
         except FileNotFoundError:
@@ -227,7 +227,7 @@ class WorkFolder:
 
 
 def check_output(out: Path) -> None:
-    """Raise InputError where ``out`` cannot be a dataset's file."""
+    """Raise InputError if ``out`` cannot be the file of a dataset."""
     if out.suffix != ".nc":
         raise InputError(f"{out}: a dataset is a netCDF file", key="out", remedy="give a name that ends in .nc")
     if out.is_symlink() or (out.exists() and not out.is_file()):
@@ -238,7 +238,7 @@ def check_output(out: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make a rename in this folder last through a power cut."""
+    """Sync a folder to disk, so that a rename in it survives a power cut."""
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

@@ -1,4 +1,4 @@
-"""The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
+"""Variables of a sweep's dataset, each declared once: its place in a prediction, unit and meaning."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ Interval = tuple[float, float] | None
 
 @dataclass(frozen=True, slots=True)
 class SweepVariable:
-    """One variable: how it is read from a state or a prediction, records of `results`."""
+    """A variable, with the function that reads it from a state or a prediction (records of `results`)."""
 
     name: str
     units: str
@@ -35,7 +35,7 @@ class SweepVariable:
 
 
 def _at(*keys: str) -> Callable[[Any], Any]:
-    """Function that reads a nested entry; it returns None if an entry on the way is None."""
+    """Function that reads a nested attribute; it returns None if one on the way is None."""
 
     def read(record: Any) -> Any:
         for key in keys:
@@ -54,7 +54,7 @@ def _force(end: int) -> Callable[[StateRecord], Any]:
 
 
 def _off_axis(name: str, units: str, long_name: str) -> SweepVariable:
-    """Variable with the value of an off-axis curve at the end of the range."""
+    """Variable for the value of an off-axis curve at the end of the range."""
 
     def read(state: StateRecord) -> Any:
         values, travel = _at("off_axis", name)(state), state.curve.indentation_mm
@@ -73,7 +73,7 @@ def _range_event(state: StateRecord) -> str:
 
 
 def _unread(state: StateRecord) -> None:
-    """No value: an interval is not part of a state (see `state_values`)."""
+    """Return no value: an interval is not part of a state (see `state_values`)."""
 
 
 _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
@@ -105,7 +105,7 @@ STATE: tuple[SweepVariable, ...] = (
     _shear("peak_sideways_force_N", "N", "sideways force where it is greatest against the travel"),
     _shear("slips_throughout_mm", "mm", "first travel at which every point of the contact slides"),
 )
-"""Variables of every point and driving pressure."""
+"""Variables for every point and driving pressure."""
 
 
 def _apex_at_limit(side: str) -> SweepVariable:
@@ -133,17 +133,17 @@ POINT: tuple[SweepVariable, ...] = (
     _number("error_limit_pressure_relative", "1", _LIMIT_ERROR, "error_estimate", "limit_pressure_relative"),
     SweepVariable("error_sensitivity_basis", "", _BASIS, _at("error_estimate", "sensitivity_basis"), True),
 )
-"""Variables of every point."""
+"""Variables for every point."""
 
 
 def state_values(state: StateRecord, interval: Interval) -> dict[str, float | str | None]:
-    """Values of a state that a dataset keeps, with the interval of its sensitivity."""
+    """Values of a state for the dataset, with the ends of its sensitivity's interval; None where unknown."""
     ends = dict(zip(_ENDS, interval or (None, None), strict=True))
     return {variable.name: ends.get(variable.name, variable.read(state)) for variable in STATE}
 
 
 def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
-    """Values of a prediction that a dataset keeps, apart from its states."""
+    """Values of a prediction for the dataset, without those of its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}
 
 
@@ -199,7 +199,7 @@ def _interval(state: SensorState, width: float) -> Interval:
 
 
 INTERVAL = "sensitivity_interval_percent"
-"""Name of half the width of the interval of the sensitivity, which follows from its ends."""
+"""Name of the half width of the sensitivity's interval, which follows from its ends."""
 
 MAPPED = {
     "sensitivity": ("sensitivity  (kPa/N)", SENSITIVITY_KEY),
@@ -207,7 +207,7 @@ MAPPED = {
     "rated-pressure": ("rated pressure  (kPa)", "rated_pressure_kPa"),
     "interval": ("interval of the sensitivity, k = 2  (± %)", INTERVAL),
 }
-"""Label and variable of every figure that is mapped, by the name of its file."""
+"""Label and variable of every figure that is mapped, by the name of the map's file."""
 
 _REASONS = (
     ("beyond the limit point", "beyond the limit point"),
@@ -218,11 +218,11 @@ _REASONS = (
     ("no equilibrium at", "no equilibrium found"),
     ("internal fault", "internal fault"),
 )
-"""Part of a message, and the words that stand for all messages with it."""
+"""Part of a message, and the words shown for every message that contains it."""
 
 
 def reason_words(message: str) -> str:
-    """Short words for a state's message, the same for messages that differ only in numbers."""
+    """Short words for a state's message; the same for messages that differ only in numbers."""
     for part, words in _REASONS:
         if part in message:
             return words
@@ -232,7 +232,7 @@ def reason_words(message: str) -> str:
 
 
 def missing_reasons(values: Array, messages: Array) -> tuple[tuple[str, ...], ...]:
-    """Words for every value (n, m) that is NaN, from the first of its messages (n, m, k) that states one; else ""."""
+    """Words for every value (n, m) that is NaN, from the first of its messages (n, m, k) that is not empty; else ""."""
     known = np.isfinite(values)
     words = np.full(known.shape, "", object)
     for place in np.argwhere(~known).tolist():

@@ -1,4 +1,4 @@
-"""The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster."""
+"""Computation of a sweep: a chunk of points in, a list of records out; in this process, in others, or on a cluster."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from pneutouch.workflows.sweep.variables import Interval, point_values, sensitiv
 
 @dataclass(frozen=True, slots=True)
 class SweepPoint:
-    """One design of a sweep: its number, the fields that it changes, and its driving pressures in kPa."""
+    """One design of a sweep: its number, the fields that it changes, and its driving pressures (kPa, ascending)."""
 
     index: int
     settings: Settings
@@ -40,12 +40,12 @@ class SweepPoint:
 
 @dataclass(frozen=True)
 class SweepStudy:
-    """A checked plan. ``base`` is only the design file; ``files`` (path to text) is a library of the files that it
-    names.
+    """A checked plan. ``base`` is the design file alone; ``files`` (text by path) is a library of all files that points
+    name.
 
-    The work reads ``files`` and not the library: a sweep does not notice when a user edits a material while it runs,
-    and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that the
-    figures follow from.
+    Points are computed from ``files`` and not from the library: a material that is edited during a sweep changes
+    nothing, and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all
+    inputs.
     """
 
     plan: SweepPlan
@@ -55,7 +55,7 @@ class SweepStudy:
     fingerprint: str
 
     def point(self, index: int) -> SweepPoint:
-        """The point with a given number."""
+        """The point with number ``index``."""
         settings = self.plan.overrides(index)
         given = settings.pop(PRESSURES, self.base.pneumatics.driving_pressures_kPa)
         assert isinstance(given, list)
@@ -63,10 +63,10 @@ class SweepStudy:
 
 
 def study(plan: SweepPlan, library: Library) -> SweepStudy:
-    """Resolve and check a plan; raises InputError naming file, key and value.
+    """Resolve and check a plan. Raises InputError that names file, key and value.
 
-    A value that fits no point at all is a mistake. A combination that does not fit, such as a thick wall on a
-    small radius in one corner of a grid, is a result: the dataset records it as refused.
+    A value that is impossible at every point is an error. An impossible combination, such as a thick wall on a small
+    radius in one corner of a grid, is a result: the dataset records it as refused.
     """
     library = CachedLibrary(library.folders)
     source = DesignSource.of(plan.design, library)
@@ -101,7 +101,7 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
 
 
 def _model(plan: SweepPlan, base: DesignFile) -> str:
-    """The model of a plan; where it names none, the usual one of all points, or USUAL where the points differ."""
+    """Model of a plan; if it names none, the usual one of all points, or USUAL if the points differ in that."""
     if plan.model != USUAL:
         return plan.model
     contact = base.contact
@@ -115,12 +115,12 @@ def _model(plan: SweepPlan, base: DesignFile) -> str:
 
 
 def _off_axis(value: Any) -> bool:
-    """True if an offset, a tilt or an object puts the contact off the axis."""
+    """True if an offset, a tilt, a shear or an object puts the contact off the axis."""
     return value in LYING if isinstance(value, str) else bool(value)
 
 
 def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
-    """Kind and name of everything that a point of the sweep may name."""
+    """Kind and name of every profile that a point of the sweep may name."""
     names: set[tuple[str, str]] = set()
     for table_name in DesignFile.model_fields:
         table = table_of(DesignFile, table_name)
@@ -136,7 +136,7 @@ def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
 
 
 def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:
-    """The values that a field has at any point; ``default`` where a point does not set it."""
+    """Values that a field has at any point; ``default`` for points that do not set it."""
     for axis in plan.axes:
         if axis.key == key:
             return list(axis.values)
@@ -144,7 +144,7 @@ def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:
 
 
 def _check(plan: SweepPlan, library: Library) -> None:
-    """Raise InputError where a value fits no point: first down a diagonal that passes every value, then by value."""
+    """Raise InputError if a value fits no point: tried first on a diagonal through all values, then by value."""
     if plan.points:
         for index, point in enumerate(plan.points):
             fault = _fault(plan, index, library)
@@ -170,7 +170,7 @@ def _check(plan: SweepPlan, library: Library) -> None:
 
 
 def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> InputError | None:
-    """Reason why none of the points is possible: the first error, or None if one point is possible."""
+    """First error of these points; None if one of them is possible."""
     first = None
     for index in indices:
         fault = _fault(plan, index, library)
@@ -181,7 +181,7 @@ def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> 
 
 
 def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
-    """Reason why a point is not a design, or None."""
+    """Error of a point that is no possible design; None if it is one."""
     try:
         load_scene(plan.design, plan.overrides(index), library)
     except InputError as error:
@@ -190,16 +190,16 @@ def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
 
 
 CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
-"""Number of points in a chunk by model: about a second of work, so that a stop loses and a slow machine delays little.
-The atlas answers them together."""
+"""Number of points in a chunk by model (others: 1): about a second of work, so that a stop or a slow machine costs
+little. The atlas answers them together."""
 
 Record = dict[str, Any]
-"""A finished point as plain data: ``point`` (its number), ``states`` in order of driving pressure, ``values``."""
+"""A finished point as plain data: ``point`` (its number), ``states`` by ascending driving pressure, ``values``."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepChunk:
-    """Points to compute with the same design and options."""
+    """Points that are computed together, with the name of their design and the options."""
 
     points: tuple[SweepPoint, ...]
     design: str
@@ -207,7 +207,7 @@ class SweepChunk:
 
 
 def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
-    """Every chunk that holds one of these numbers: cut alike whatever is missing, so that the bytes stay the same."""
+    """Chunks that hold one of these numbers: cut alike whatever is missing, so that the bytes stay the same."""
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
     starts = dict.fromkeys(index - index % size for index in indices)
     options = PredictionOptions(plan.model, plan.closure, plan.clamp)
@@ -216,7 +216,7 @@ def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
 
 
 def unpack(files: dict[str, str], folder: Path) -> None:
-    """Write a study's files where ``compute`` finds them."""
+    """Write a study's files into a folder, where `compute` reads them."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -226,7 +226,7 @@ def unpack(files: dict[str, str], folder: Path) -> None:
 def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
     """Predict every point of a chunk from the files in ``folder``; a point that cannot be predicted has a record too.
 
-    Driving pressures beyond the limit are refused one by one, and the rest is predicted.
+    Driving pressures beyond the limit are refused one by one, and the others are predicted.
     """
     library = CachedLibrary((folder,))
     works = [_PointWork(point, point) for point in chunk.points]
@@ -245,7 +245,7 @@ def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
 
 @dataclass
 class _PointWork:
-    """A point in work: what is left of it, the limits that it met, and its evaluation or error."""
+    """A point in progress: the part left to compute, the limits met, each for a number of pressures, and the result."""
 
     point: SweepPoint
     left: SweepPoint
@@ -253,7 +253,7 @@ class _PointWork:
     result: Evaluation | Exception | None = None
 
     def take(self, outcome: Evaluation | Exception) -> None:
-        """Keep an outcome; driving pressures beyond the limit leave the others to be computed again."""
+        """Keep an outcome; for driving pressures beyond the limit, the others are left to be computed again."""
         if not isinstance(outcome, StatedPressureError):
             self.result = outcome
             return
@@ -263,7 +263,7 @@ class _PointWork:
         self.left = replace(self.left, driving_pressures_kPa=tuple(kept_kPa))
 
     def record(self, outcome: _Values | Exception | None, library: Library) -> Record:
-        """The point as plain data."""
+        """Record of the point, as plain data."""
         states: list[dict[str, Any]] = []
         values: dict[str, Any] = {}
         refused: list[dict[str, Any]] = []
@@ -279,13 +279,13 @@ class _PointWork:
 
 
 _Values = tuple[list[dict[str, Any]], dict[str, Any]]
-"""Values of the states of a point, and of the point."""
+"""Values of a point's states, and of the point."""
 
 _T = TypeVar("_T")
 
 
 def _tried(work: Callable[[], _T]) -> _T | Exception:
-    """The outcome of a point's work, or its error: one that fails must not cost the others, perhaps hours of work."""
+    """Result of ``work`` or its error, as a point that fails must not cost the others, perhaps hours of work."""
     try:
         return work()
     except (MemoryError, OSError):
@@ -300,7 +300,7 @@ def _drawn(design: str, point: SweepPoint, options: PredictionOptions, library: 
 
 
 def _answers(scenes: Sequence[DrawnScene | Exception], model: str) -> list[dict[str, Answered]]:
-    """The answers of the atlas by its name, for the scenes that it covers: all in one pass."""
+    """Answers of the atlas, under its name, for the scenes that it covers, computed in one pass; empty for others."""
     found: list[dict[str, Answered]] = [{} for _ in scenes]
     if model not in ("atlas", "auto"):
         return found
@@ -320,7 +320,7 @@ def _evaluated(scene: DrawnScene, answers: dict[str, Answered], library: Library
 
 
 def _values(evaluations: Sequence[Evaluation]) -> list[_Values | Exception]:
-    """Values of every evaluation; their intervals in one pass, and one by one where that fails."""
+    """Values of every evaluation, or its error; intervals are computed in one pass, and one by one if that fails."""
     every = _tried(lambda: sensitivity_intervals(evaluations))
     if not isinstance(every, Exception):
         return [_tried(partial(_of_evaluation, *pair)) for pair in zip(evaluations, every, strict=True)]
@@ -342,6 +342,6 @@ def _failure(error: Exception, count: int, library: Library) -> list[dict[str, A
 
 
 def _stopped(status: str, message: str, count: int, library: Library) -> list[dict[str, Any]]:
-    """States without figures. The folder of the files is a temporary one, so messages name only the file."""
+    """States without figures. Messages name files without their folder, which is a temporary one."""
     folder = f"{library.folders[0]}/"
     return [{"status": status, "message": message.replace(folder, "")} for _ in range(count)]

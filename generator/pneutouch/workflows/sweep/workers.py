@@ -1,4 +1,4 @@
-"""Chunks computed in this process, in a pool of others on this machine, or on an existing Dask cluster."""
+"""Computation of chunks in this process, in a pool of processes on this machine, or on an existing Dask cluster."""
 
 from __future__ import annotations
 
@@ -30,15 +30,14 @@ _PATIENCE = 6
 """Seconds to wait for the scheduler, and again for a worker."""
 
 _QUEUED = 3
-"""Chunks sent ahead for each core of the cluster: more would only lengthen the work that a stop throws away."""
+"""Chunks sent ahead for each core of the cluster: more would only add to the work that a stop throws away."""
 
 
 def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
-    """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are done.
+    """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are finished.
 
-    A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError if there is no cluster
-    that can do this work, ComputationError where the connection is lost.
-    """
+    Dask computes a chunk whose worker is lost again elsewhere. Raises InputError if there is no cluster that can do
+    this work, ComputationError if the connection is lost."""
     try:
         with _connected(address) as client:
             yield from _computed(client, study, chunks, address)
@@ -75,7 +74,8 @@ def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], addre
 
 
 def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> list[Record]:
-    """Compute a chunk from files sent with it, on a machine that may have nothing of the user's."""
+    """Compute a chunk from files sent with it, on a machine without the user's files. Raises InputError for another
+    version."""
     if version != __version__:
         raise InputError(f"a worker has pneutouch {__version__}, this is {version}; they must be the same")
     with temporary_folder() as folder:
@@ -84,7 +84,7 @@ def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> lis
 
 
 def _result(future: Any, address: str) -> list[Record]:
-    """A chunk's records; raises an error that says what went wrong."""
+    """Records of a chunk. Raises InputError or ComputationError that says what went wrong."""
     if future.status == "finished":
         records: list[Record] = future.result()
         return records
@@ -104,7 +104,7 @@ def _result(future: Any, address: str) -> list[Record]:
 
 @contextlib.contextmanager
 def _connected(address: str) -> Iterator[Client]:
-    """A client of the scheduler with at least one worker behind it."""
+    """Client of the scheduler with at least one worker. Raises InputError if there is none."""
     try:
         from distributed import Client
     except ImportError:
@@ -130,8 +130,8 @@ def _connected(address: str) -> Iterator[Client]:
 
 
 def _require_scheduler(address: str) -> None:
-    """Raise InputError where no scheduler answers. Checked before a client is made: one that fails to connect takes
-    a quarter of a minute to go away, and prints a traceback."""
+    """Raise InputError if no scheduler answers. This is checked before a client is made, because one that fails to
+    connect takes a quarter of a minute to give up, and prints a traceback."""
     try:
         kind = asyncio.run(asyncio.wait_for(_identity(address), _PATIENCE))
     except (OSError, ValueError) as error:
@@ -157,11 +157,11 @@ async def _identity(address: str) -> str:
 
 
 _QUEUED_EACH = 2
-"""Chunks that wait for each worker: enough that none idles, few enough that a stop is soon done."""
+"""Chunks queued for each worker: enough that none idles, few enough that a stop is soon done."""
 
 
 def cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -172,9 +172,9 @@ def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]
 
 
 def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
-    """Compute chunks in ``workers`` processes; records come in the order in which chunks are done.
+    """Compute chunks in ``workers`` processes; records come in the order in which chunks are finished.
 
-    Raises ComputationError if a worker dies. If it is ended half way, the processes end as well.
+    Raises ComputationError if a worker dies. If the iteration is closed early, the processes end as well.
     """
     context = multiprocessing.get_context("spawn")
     waiting, others = iter(chunks), set(multiprocessing.active_children())
@@ -212,7 +212,7 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
 
 @contextlib.contextmanager
 def _single_threaded() -> Iterator[None]:
-    """Processes started here use one thread each: the pool takes the cores already."""
+    """Context in which processes are started with one thread each, because the pool already uses all cores."""
     before = os.environ.get("OMP_NUM_THREADS")
     os.environ["OMP_NUM_THREADS"] = "1"
     try:
@@ -226,9 +226,9 @@ def _single_threaded() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes started here never receive Ctrl-C, not even while they start: the parent handles it.
+    """Context in which processes are started that never receive Ctrl-C, even while they start: the parent handles it.
 
-    Blocked and not ignored, for the parent receives it afterwards.
+    It is blocked and not ignored, so that the parent receives it afterwards.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -238,7 +238,7 @@ def _deaf() -> Iterator[None]:
 
 
 def _prepare_worker() -> None:
-    """Make a worker ignore Ctrl-C, however it was started, and end when its parent was killed."""
+    """Make a worker ignore Ctrl-C, however it was started, and end when its parent is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
