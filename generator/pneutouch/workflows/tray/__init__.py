@@ -1,1 +1,1 @@
-"""Several sensors on one tray of a printer: packed, marked, labelled, with as few resin changes as possible."""
+"""Tray: several sensors in one print, packed, marked and labelled, with as few resin changes as possible."""

@@ -1,4 +1,4 @@
-"""A tray laid out: its parts meshed once for each geometry, marked, packed, and split into jobs by resin."""
+"""Layout of a tray: its parts meshed once for each geometry, marked, packed, and split into jobs by resin."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ StepReport = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class TrayPart:
-    """One part of a tray. Its bodies (named ``label-role``) lie in one frame with the smallest corner at the origin."""
+    """One part of a tray; its bodies (named ``label-role``) share a frame with their least corner at the origin."""
 
     label: str
     value: TrayVariant
@@ -34,24 +34,24 @@ class TrayPart:
 
     @property
     def name(self) -> str:
-        """Name on the tray: two parts of one sensor share a label."""
+        """Name on the tray, unlike the label, which parts of one sensor share."""
         return self.bodies[0].name
 
     @property
     def size(self) -> Array:
-        """Extent (3,) in its own frame, mm."""
+        """Extent (3,) in the part's frame, mm."""
         size: Array = np.max([body.bounds[1] for body in self.bodies], axis=0)
         return size
 
     @property
     def footprint(self) -> tuple[float, float]:
-        """Extent along x and y on the tray, mm."""
+        """Extent along x and y on the tray, mm, turned if the part is."""
         x, y, _ = self.size
         return (float(y), float(x)) if self.place.turned else (float(x), float(y))
 
     @property
     def transform(self) -> Array:
-        """Rows (4, 3): the images of the x, y and z axes, and the shift in mm, from its frame to the tray's."""
+        """Rows (4, 3): the images of the x, y and z axes, and the shift in mm, from the part's frame to the tray's."""
         place = self.place
         if not place.turned:
             return np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [place.x, place.y, 0]], float)
@@ -65,7 +65,7 @@ class TrayPart:
 
 @dataclass(frozen=True, eq=False)
 class TrayJob:
-    """One run of the printer: a mode, the resins loaded, and parts on the tray."""
+    """One run of the printer: its mode, the resins loaded, and the parts."""
 
     mode: Mode
     resins: tuple[str, ...]
@@ -78,7 +78,7 @@ class TrayJob:
 
     @property
     def layers(self) -> int:
-        """Layers of the tallest part."""
+        """Number of layers of the tallest part."""
         return layers(self.height, self.mode)
 
 
@@ -92,7 +92,7 @@ class TrayLayout:
 
     @property
     def printer(self) -> Printer:
-        """The machine."""
+        """Printer of the tray."""
         return self.expanded.printer
 
     @property
@@ -102,14 +102,14 @@ class TrayLayout:
 
     @property
     def resin_note(self) -> str:
-        """Number of changes of the resin, in words."""
+        """Text for the number of jobs and of resin changes."""
         if len(self.jobs) == 1:
             return "one job, no resin change"
         count = changes([frozenset(job.resins) for job in self.jobs])
         return f"{len(self.jobs)} jobs in this order, {count} {'resin' if count == 1 else 'resins'} loaded between them"
 
     def name(self, job: TrayJob) -> str:
-        """Name of a job's files."""
+        """Name of the files of a job."""
         name = self.order.name
         return name if len(self.jobs) == 1 else f"{name}-{self.jobs.index(job) + 1}"
 
@@ -130,12 +130,12 @@ def lay(order: TrayOrder, library: Library | None = None, progress: StepReport =
 
 
 def layers(height: float, mode: Mode) -> int:
-    """Layers of a mode in a height in mm; a micrometre too much is rounding."""
+    """Number of layers of a mode in a height (mm); a micrometre too much counts as rounding."""
     return math.ceil((height - UM) / (UM * mode.layer_um))
 
 
 def fill(job: TrayJob, printer: Printer) -> dict[str, float]:
-    """Shares of the envelope's footprint: of the parts' bounding boxes, and of their true outlines."""
+    """Shares of the envelope's footprint that the parts' bounding boxes take, and their true outlines."""
     whole = printer.envelope.x * printer.envelope.y
     boxes = sum(part.footprint[0] * part.footprint[1] for part in job.parts)
     areas: dict[Any, float] = {}
@@ -149,7 +149,7 @@ def fill(job: TrayJob, printer: Printer) -> dict[str, float]:
 
 
 def outline(bodies: Sequence[Body]) -> Any:
-    """Outline of bodies seen from above, as a CrossSection."""
+    """Outline of bodies seen from above, as a `manifold3d.CrossSection`."""
     from manifold3d import CrossSection, OpType
 
     return CrossSection.batch_boolean([body.manifold().project() for body in bodies], OpType.Add)
@@ -182,7 +182,7 @@ def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayO
 
 
 def _part(piece: TrayPiece, plain: list[Body], copy: int, marker: Marker) -> TrayPart:
-    """A part with its marks, at the origin. In an assembly the rigid body is marked, and the membrane is not."""
+    """A part with its marks, at the origin. In an assembly the rigid bodies are marked, the membrane is not."""
     value, label = piece.value, f"{piece.value.letter}{copy}"
     bodies, marks = [], []
     for solid, body in zip(piece.solids, plain, strict=True):
@@ -198,7 +198,7 @@ def _part(piece: TrayPiece, plain: list[Body], copy: int, marker: Marker) -> Tra
 
 
 def _box(part: TrayPart) -> tuple[float, float]:
-    """Width and depth in whole micrometres, rounded up."""
+    """Width and depth of a part in mm, rounded up to whole micrometres."""
     x, y, _ = part.size
     return math.ceil(x / UM - 1e-6) * UM, math.ceil(y / UM - 1e-6) * UM
 

@@ -1,4 +1,4 @@
-"""Order of a tray, from a file or from flags: its designs, the bodies that its printer prints, and their jobs."""
+"""Order of a tray, from a file or from flags: its designs, the bodies that the printer prints, and their jobs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ from pneutouch.spec.values import file_name, name_of
 
 @dataclass(frozen=True)
 class TrayOrder:
-    """A tray with the name of its output, the file or flags it is from (for messages), and overrides of all entries."""
+    """A tray with the name of its output, its file or flags for messages, overrides of all entries, and its folder."""
 
     name: str
     where: str
@@ -29,17 +29,17 @@ class TrayOrder:
     folder: Path | None = None
 
     def design(self, name: str) -> str:
-        """A design as the catalogue takes it: a path in a tray file is in the folder of that file."""
+        """Design as the catalogue takes it; a path in a tray file is relative to that file's folder."""
         return name if self.folder is None else design_inside(self.folder, name, file=self.where, key="entry.design")
 
 
 def is_tray_file(path: Path) -> bool:
-    """True if a path is a TOML file with the tables of a tray; False for a design or a missing file."""
+    """True for a TOML file with a table of a tray; False for a design or a missing file."""
     return path.suffix == ".toml" and is_file(path) and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 
 def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> TrayOrder:
-    """Read a tray file; ``head`` (profile, marks) comes before its [tray]. Raises InputError naming file and key."""
+    """Order from a tray file; ``head`` (profile, marks) overrides its [tray]. Raises InputError naming file and key."""
     content = read_toml(path)
     given = {key: value for key, value in head.items() if value is not None}
     if given:
@@ -52,7 +52,7 @@ def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> 
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Changes | None = None, **head: Any
 ) -> TrayOrder:
-    """An entry a design, varied over ``table.key=VALUES``, in ``copies``. Raises InputError naming the parameter."""
+    """Order with an entry a design, varied over ``table.key=VALUES``. Raises InputError naming the parameter."""
     if not LEAST_COPIES <= copies <= MOST_COPIES:
         raise InputError(f"must be from {LEAST_COPIES} to {MOST_COPIES}", key="copies", value=copies)
     varied = parse_over(over)
@@ -67,12 +67,12 @@ LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Letters of the variants, without I and O, which read as 1 and 0."""
 
 MOST_PARTS = 2000
-"""Greatest number of bodies of a tray, which holds some hundred: more are a mistake."""
+"""Greatest number of bodies of a tray: one holds some hundred, so more are a mistake."""
 
 
 @dataclass(frozen=True)
 class TrayVariant:
-    """One design of a tray: its number ``index`` from 1, the same in letters, and the varied ``key`` with its value."""
+    """One design of a tray: its number ``index`` from 1, as ``letter`` too; the varied ``key`` and value, or None."""
 
     index: int
     letter: str
@@ -85,7 +85,7 @@ class TrayVariant:
 
 @dataclass(frozen=True)
 class TrayPiece:
-    """Part of a value that is printed as one: a body, or the bodies of an assembly grown in one print."""
+    """Part of a variant that is printed as one: a body, or the bodies of an assembly that grow in one print."""
 
     value: TrayVariant
     solids: tuple[Solid, ...]
@@ -98,7 +98,7 @@ class TrayPiece:
 
 @dataclass(frozen=True)
 class ExpandedTray:
-    """All pieces of a tray for its printer, and notes on the parts left out."""
+    """All pieces that a printer prints of a tray, and notes on the parts left out."""
 
     printer: Printer
     profile: str
@@ -107,7 +107,7 @@ class ExpandedTray:
 
 
 def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
-    """Load and draw every design of a tray, without prediction. Raises InputError if one is wrong or none left."""
+    """Load and draw every design of a tray, without prediction. Raises InputError if one is wrong or none is left."""
     library = library or Library.default()
     values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
     values = [
@@ -134,7 +134,7 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
 
 
 def letter(index: int) -> str:
-    """Number of a value in letters: A to Z without I and O, then AA, AB ..."""
+    """Number of a variant as letters: A to Z without I and O, then AA, AB ..."""
     text = ""
     while index > 0:
         index, digit = divmod(index - 1, len(LETTERS))
@@ -160,7 +160,7 @@ def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library:
 
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
-    """The pieces of a value by print job, and notes on the parts left out."""
+    """Pieces of a variant that the printer prints, one a job, and notes on the parts left out."""
     assembly, bodies = value.assembly, order.tray.tray.bodies
     groups: dict[str, list[Solid]] = {}
     for solid in assembly.solids:
@@ -182,14 +182,14 @@ def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[lis
 
 
 _EXACT = 7
-"""Up to this many different sets of resins the fewest jobs and the best order are found by trying all."""
+"""Number of different sets of resins up to which the fewest jobs and the best order are found by trying all."""
 
 
 def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str = "tray") -> list[list[int]]:
-    """Indices of ``materials`` (those of one part each) by job: fewest jobs, then fewest resins to load.
+    """Indices by job of ``materials``, those of one part each: fewest jobs, then fewest resins to load.
 
-    A job's base resins must be in the printer at once, in one mode (`Printer.mode_for`). Raises InputError if a part
-    cannot be printed at all.
+    The base resins of a job must be in the printer at once, in one mode (`Printer.mode_for`). Raises InputError if a
+    part cannot be printed at all.
     """
     kinds: dict[frozenset[str], list[int]] = {}
     for index, alone in enumerate(materials):
@@ -214,12 +214,12 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
 
 
 def changes(loads: Sequence[frozenset[str]]) -> int:
-    """Number of resins that are changed from job to job, the first job's not counted."""
+    """Number of resins that are loaded between jobs; those of the first job are not counted."""
     return sum(len(after - before) for before, after in pairwise(loads))
 
 
 def _fewest(count: int, fits: Callable[[list[int]], bool]) -> list[list[list[int]]]:
-    """All partitions of ``range(count)`` into fewest groups that fit; one by first fit where there are too many."""
+    """Partitions of ``range(count)`` into the fewest groups that fit; a single one, by first fit, beyond `_EXACT`."""
     if count > _EXACT:
         groups: list[list[int]] = []
         for k in range(count):
@@ -245,7 +245,7 @@ def _partitions(count: int) -> Iterator[list[list[int]]]:
 
 
 def _ordered(groups: list[list[int]], loads: Sequence[frozenset[str]]) -> list[list[int]]:
-    """Groups in the order with the fewest changes; the nearest next one where there are too many to try."""
+    """Groups in the order with the fewest changes; beyond `_EXACT` by taking the nearest next one."""
     if len(loads) <= _EXACT:
         orders = permutations(range(len(loads)))
         best = min(orders, key=lambda order: (changes([loads[k] for k in order]), order))

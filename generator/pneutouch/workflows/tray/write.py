@@ -1,4 +1,4 @@
-"""Write a tray's folder, checked by the print rules: 3MF, STL, label lists, views from above and the manifest."""
+"""Writing of a tray's folder, after the print rules: 3MF, STL, label lists, views from above and the manifest."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
 
 
 def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
-    """The envelope's footprint and, dashed, its free border."""
+    """Draw the envelope's footprint and, dashed, its free border."""
     from matplotlib.patches import Rectangle
 
     ax.add_patch(Rectangle((0, 0), width, depth, fill=False, edgecolor=INK, linewidth=1.0))
@@ -72,7 +72,7 @@ def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
 
 
 def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
-    """One part: its resin's colour, its outline, its label as large as it fits."""
+    """Draw one part: its resin's colour, its outline, and its label as large as fits."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -103,7 +103,7 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
 
 
 def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda step: None) -> TrayRecord:
-    """Write a tray into ``folder``. Raises RuleBrokenError, nothing written, where a part breaks a print rule."""
+    """Write a tray into ``folder``. Raises RuleBrokenError, with nothing written, if a part breaks a print rule."""
     check_writable(folder)
     progress("rules")
     checked = findings(layout)
@@ -137,7 +137,7 @@ def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda s
 
 
 def tray_record(layout: TrayLayout, folder: Path) -> TrayRecord:
-    """The tray as ``pneutouch tray`` states it."""
+    """Record of the tray, as ``pneutouch tray`` states it."""
     return TrayRecord(
         tray=layout.order.name,
         folder=str(folder),
@@ -151,9 +151,9 @@ def tray_record(layout: TrayLayout, folder: Path) -> TrayRecord:
 
 
 def inputs(layout: TrayLayout) -> Mapping[str, Any]:
-    """Everything that a tray depends on: the tray file or options, the printer, and each value's scene resolved.
+    """All that a tray depends on: the tray file or options, the printer, and the resolved design of each variant.
 
-    ``values`` state by letter which of ``things`` each scene is made of: they share most of them.
+    ``values`` names, by letter, the entries of ``things`` that each design consists of; designs share most of them.
     """
     values = {piece.value.letter: piece.value for piece in layout.expanded.pieces}
     things: dict[str, Any] = {}
@@ -181,7 +181,7 @@ def inputs(layout: TrayLayout) -> Mapping[str, Any]:
 
 
 def _item(part: TrayPart) -> TrayItem:
-    """Item of a part; copies without marks share one object, with the value's letter instead of the label."""
+    """3MF item of a part; copies without marks share one object, named by the variant's letter instead of the label."""
     if any(mark.kind != "none" for mark in part.marks):
         return TrayItem(part.name, part.name, part.bodies, part.transform)
     letter = part.value.letter
@@ -217,13 +217,13 @@ def _job(layout: TrayLayout, job: TrayJob) -> TrayJobRecord:
 
 
 def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
-    """The marked bodies of a part in the job's mode, without exact shapes, which have no marks and another frame."""
+    """Marked bodies of a part in the job's mode, for the print rules; without exact shapes, which have no marks."""
     items = (PrintItem(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
     return PrintSubject(tuple(items), name=part.name)
 
 
 def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
-    """The findings, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
+    """Findings, errors first. Of copies, and of equal shapes in resins of one kind, only the first is judged."""
     listed, names = [], [field.name for field in fields(Finding)]
     for job in layout.jobs:
         alike: dict[object, list[int]] = {}
@@ -238,18 +238,18 @@ def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
 
 
 def rows(layout: TrayLayout) -> tuple[LabelRow, ...]:
-    """One row a body, in the order of the labels within each job."""
+    """Rows of the label list, one a body, in the order of the labels within each job."""
     return tuple(row for job in layout.jobs for part in job.parts for row in _rows(layout, job, part))
 
 
 def _labels_csv(listed: Sequence[LabelRow]) -> bytes:
-    """The list for a spreadsheet or a label printer."""
+    """Label list for a spreadsheet or a label printer."""
     names = [field.name for field in fields(LabelRow)]
     return csv_bytes(names, [[getattr(row, name) for name in names] for row in listed])
 
 
 def _labels_md(layout: TrayLayout, record: TrayRecord, findings: tuple[TrayFinding, ...] = ()) -> bytes:
-    """The label list to print and stick: a head, a table a job, and the findings of the print rules."""
+    """Label list to print and stick on: a head, a table a job, a legend of marks, and findings of the rules."""
     printer, head = layout.printer, layout.order.tray.tray
     lines = [
         f"# {markdown_escaped(head.title)}",
@@ -331,12 +331,12 @@ def _value(row: LabelRow) -> str:
 
 
 def _resin(row: LabelRow) -> str:
-    """The resin with the base resins, without which a digital material's code is ambiguous."""
+    """Text for the resin; for a mix with its base resins, without which a digital material's code is ambiguous."""
     return f"{row.material} ({row.base_resins})" if " + " in row.base_resins else row.material
 
 
 def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
-    """Materials that a job of their own would print in a finer mode."""
+    """Lines on materials that alone would print in a finer mode than that of their job."""
     modes = {
         solid.material.label: layout.printer.mode_for(*(s.material for s in part.solids))
         for part in job.parts
@@ -355,7 +355,7 @@ def _mark(row: LabelRow) -> str:
 
 
 def _marks(layout: TrayLayout) -> list[str]:
-    """Legend of the kinds of mark that are on the tray."""
+    """Lines that explain the kinds of mark on the tray."""
     marks = [mark for part in layout.parts for mark in part.marks]
     kinds = {mark.kind for mark in marks}
     lines = []
