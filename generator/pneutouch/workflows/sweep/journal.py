@@ -71,7 +71,7 @@ class Journal:
 
 
 def replace_whole(fresh: Path, target: Path, content: bytes) -> None:
-    """Write ``content`` to ``fresh``, synced to disk, then rename it to ``target``, which so is never half a file.
+    """Write ``content`` to ``fresh``, synced to disk, then rename it to ``target``, so that this is never half a file.
 
     For files of the locked work folder, where a kill leaves ``fresh`` under a name that the next sweep clears. Raises
     OSError, so that a sweep can report which points are kept."""

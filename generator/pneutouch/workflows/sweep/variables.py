@@ -232,7 +232,7 @@ def reason_words(message: str) -> str:
 
 
 def missing_reasons(values: Array, messages: Array) -> tuple[tuple[str, ...], ...]:
-    """Words for every value (n, m) that is NaN, from the first of its messages (n, m, k) that is not empty; else ""."""
+    """Words for every value (n, m): "" if finite; else from its first non-empty message (n, m, k), or "not known"."""
     known = np.isfinite(values)
     words = np.full(known.shape, "", object)
     for place in np.argwhere(~known).tolist():

@@ -36,7 +36,7 @@ _QUEUED = 3
 def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
     """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are finished.
 
-    Dask computes a chunk whose worker is lost again elsewhere. Raises InputError if there is no cluster that can do
+    If a worker is lost, Dask computes its chunk again elsewhere. Raises InputError if there is no cluster that can do
     this work, ComputationError if the connection is lost."""
     try:
         with _connected(address) as client:
