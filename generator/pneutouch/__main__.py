@@ -1,4 +1,4 @@
-"""``python -m pneutouch``."""
+"""The command line as ``python -m pneutouch``."""
 
 from pneutouch.cli import run
 

@@ -1,15 +1,14 @@
-"""Errors of the program, in fields, so that a program can act on them and a message can be composed from them.
+"""The errors that the package raises: problem, place, value and remedy are fields, from which the message is composed.
 
-Every error carries the exit code of the command line: 1 a rule or a target is not met, 2 the input is
-wrong, 3 a computation could not be completed. To raise one, give the problem and what is known about it::
+Every class has the exit code of the command line: 1 a rule or a target is not met, 2 the input is wrong, 3 a
+computation could not be completed. To raise an error, give the problem and all that is known about it::
 
     raise InputError("unknown material", file="a.toml", key="membrane.material", value="Tanga", remedy="give TangoPlus")
     # a.toml: membrane.material = "Tanga": unknown material; give TangoPlus
 
-A parameter of a Python function is named by ``key``, without a file. Inside a problem or a remedy it
-stands in backquotes (``give `design` ``). The command line alone turns both into its options.
-
-A value inside a problem or a remedy is written by `shown`: as a user types it, never as Python shows it.
+For a wrong parameter of a Python function, ``key`` is its name and there is no file. Inside a problem or a remedy the
+name of a parameter stands in backquotes (``give `design` ``). The command line replaces both by the names of its
+options. Values inside a problem or a remedy are written by `shown`: as in a TOML file, not as by Python's ``repr``.
 """
 
 import datetime
@@ -23,21 +22,21 @@ from os import PathLike, fspath
 from typing import Any
 
 _LONGEST = 200
-"""Characters of a value that a message shows: enough to find it again."""
+"""Greatest number of characters of a value in a message: enough to find the value again."""
 
 _DEEPEST = 20
-"""Tables and lists within one another that a message shows: a value may be nested deeper than Python calls go."""
+"""Greatest depth of nested tables and lists in a message: a value may be nested deeper than Python's recursion goes."""
 
 _LINE = 4000
-"""Characters of a line of a message: none that is the project's own is as long."""
+"""Greatest number of characters in a line of a message: the package's own lines are shorter."""
 
 
 class PneutouchError(Exception):
-    """Base of the three errors that a user may see.
+    """Base class of the three kinds of errors that a user may see.
 
-    problem: what is wrong.  file: where it is written.  key: the key in that file, or the parameter of the function.
-    value:   what was given there.  remedy: what to do about it.  All but the problem may be None.
-    fields:  the keys, ``table.key``, that a problem with a table or a whole file is about.
+    problem: what is wrong. file: the file with the problem. key: the key in that file, or the function's parameter.
+    value: the wrong value. remedy: what to do. All but the problem may be None.
+    fields: keys (``table.key``) concerned by a problem with a table or a whole file. others: further errors (`joined`).
     """
 
     exit_code = 3
@@ -59,7 +58,7 @@ class PneutouchError(Exception):
         self.others: tuple[PneutouchError, ...] = ()
 
     def message(self, option: Callable[[str], str | None] = lambda parameter: None) -> str:
-        """The whole message; ``option`` translates a parameter's name into the name that the reader uses, or None."""
+        """Message with those of `others`; ``option`` gives the reader's name of a parameter, or None to keep it."""
         known = option(self.key) if self.key and not self.file else None
         place = known or self.key or ""
         if self.value is not None:
@@ -80,7 +79,7 @@ class PneutouchError(Exception):
         return self.message()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Let errors pass between processes, with any parameters of a subclass."""
+        """Pickle the error with all its attributes, also if a subclass takes other parameters."""
         return _restored, (type(self), self.args), self.__dict__
 
 
@@ -91,19 +90,19 @@ class RuleBrokenError(PneutouchError):
 
 
 class InputError(PneutouchError):
-    """Something that was given is wrong: a file, a key in it, or a parameter."""
+    """Wrong input: a file, a key in it, or a parameter of a function."""
 
     exit_code = 2
 
 
 class ComputationError(PneutouchError):
-    """A computation stopped; the message says where, why, and a remedy."""
+    """A computation that could not be completed."""
 
     exit_code = 3
 
 
 class BeyondLimitError(ComputationError):
-    """A driving pressure beyond the limit point: that ``pressure`` and the ``limit``, MPa."""
+    """A driving pressure beyond the limit point; ``pressure`` and ``limit`` are both in MPa."""
 
     def __init__(self, pressure: float, limit: float, problem: str) -> None:
         super().__init__(problem)
@@ -111,7 +110,7 @@ class BeyondLimitError(ComputationError):
 
 
 class StatedPressureError(InputError):
-    """A driving pressure of a design beyond the limit point: that ``pressure`` and the ``limit``, MPa."""
+    """A driving pressure in a design file beyond the limit point; ``pressure`` and ``limit`` are both in MPa."""
 
     def __init__(self, pressure: float, limit: float, problem: str, **place: Any) -> None:
         super().__init__(problem, **place)
@@ -119,14 +118,14 @@ class StatedPressureError(InputError):
 
 
 def joined(errors: Sequence[PneutouchError]) -> PneutouchError:
-    """The first of ``errors``, whose message goes on with the others', one a line."""
+    """The first of ``errors``, changed so that its message goes on with those of the others, each on its own line."""
     first = errors[0]
     first.others = tuple(errors[1:])
     return first
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return ``" Did you mean X?"`` for the first known word that ends in ``word``, or the nearest; else the words."""
+    """Hint ``" Did you mean X?"`` for a known word ending in ``_word``, or else similar to it; else the known words."""
     words = list(known)
     if longer := [one for one in words if one.endswith(f"_{word}")]:
         return f" Did you mean {longer[0]}?"
@@ -139,15 +138,15 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value in the form in which a user types it into a TOML file, on one line and cut where it is long.
+    """A value as it is written in a TOML file, on one line and cut after 200 characters.
 
-    Text stands in double quotes with control characters escaped; what TOML has no form for is named by its type.
+    Text stands in double quotes with control characters escaped. None is ``nothing``; other objects are named by type.
     """
     return _cut(_toml(value))
 
 
 def one_line(text: str) -> str:
-    """A text of others on one line: control characters escaped, and cut where it is long."""
+    """Text of any origin on one line: control characters are escaped, and it is cut after 200 characters."""
     return _cut(_escaped(text))
 
 
@@ -156,7 +155,7 @@ def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchErr
 
 
 def _typed(value: Any) -> str:
-    """A value as it is typed on a command line: text bare, a number in its shortest form."""
+    """A value as it is typed on a command line: text without quotes, a float with up to six digits."""
     if isinstance(value, float):
         return f"{value:g}"
     return _cut(_escaped(value)) if isinstance(value, str) else shown(value)
@@ -193,7 +192,7 @@ def _number(value: numbers.Real) -> str:
 
 
 def _escaped(text: str, keep: str = "") -> str:
-    """The text with control characters, which move the cursor, ring or colour, written as TOML escapes them."""
+    """The text with control characters, which could move the cursor, as TOML escapes; those in ``keep`` stay."""
     return "".join(c if c.isprintable() or c in keep else _code(c) for c in text)
 
 

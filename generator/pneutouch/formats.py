@@ -1,8 +1,8 @@
 """Versions of the files that the program writes to be read later, all in one place.
 
-Every such file gives ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
-is that of the measured files. A version counts changes after which an older program would misread the file; keys that
-are added do not raise it.
+Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign states it in ``campaign_format``, because its
+``format`` is that of the measured files. A version is raised by a change after which an older program would misread the
+file, not by added keys.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ KEY = "format"
 
 
 class StoredFormat(NamedTuple):
-    """The version of a format, and the file that has it."""
+    """The version of a format, and in words the file that has this format."""
 
     version: int
     file: str
@@ -50,22 +50,22 @@ _STATED = re.compile(r"pneutouch/([a-z-]+)/([1-9][0-9]{0,5})")
 
 
 def format_of(name: str) -> str:
-    """Value of the key ``format`` in a file of this kind: ``pneutouch/prediction/1``."""
+    """Value of the key ``format`` for the format ``name`` of `FORMATS`, such as ``pneutouch/prediction/1``."""
     return f"pneutouch/{name}/{FORMATS[name].version}"
 
 
 def version_of(name: str) -> int:
-    """Version of a kind of document; 1 for kinds without a format, which people write or commands only print."""
+    """Version of the document ``name``; 1 for one without a format, which people write or commands only print."""
     return FORMATS[name].version if name in FORMATS else 1
 
 
 def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
-    """A document with its format."""
+    """A copy of ``document`` that begins with the key ``format`` for the format ``name``."""
     return {KEY: format_of(name), **document}
 
 
 def problem_of(name: str, stated: object) -> tuple[str, str] | None:
-    """Problem with the format ``stated`` by a file (None: no key) and its remedy; None for a file that can be read."""
+    """Problem and remedy if ``stated``, a file's format (None: no key), is not ``name`` or is newer; else None."""
     match = _STATED.fullmatch(stated) if isinstance(stated, str) else None
     if match is None or match[1] != name:
         problem = "missing" if stated is None else "not the format of this file"
@@ -79,7 +79,7 @@ def problem_of(name: str, stated: object) -> tuple[str, str] | None:
 
 
 def check_format(name: str, content: Mapping[str, Any], file: object, key: str = KEY) -> None:
-    """Raise InputError with file, key and value if ``content`` has no format, another one or a later one."""
+    """Raise InputError if ``content[key]`` is missing, not the format ``name``, or of a later version."""
     problem = problem_of(name, content.get(key))
     if problem is not None:
         raise InputError(problem[0], file=str(file), key=key, value=content.get(key), remedy=problem[1])

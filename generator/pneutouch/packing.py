@@ -1,4 +1,4 @@
-"""Shelf packing: rectangles in rows, the deepest first, each turned by 90 degrees where that makes a row less deep."""
+"""Packing of rectangles in rows: `pack` sorts and turns them, `in_rows` keeps their order and orientation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,12 +9,12 @@ _ROUNDING = 1e-9
 """Tolerance of sums of lengths, mm."""
 
 _DECIMALS = 3
-"""Places are whole micrometres: positions are read and written by people."""
+"""Decimals of a position in mm: whole micrometres, because people read and write positions."""
 
 
 @dataclass(frozen=True, slots=True)
 class PackedPosition:
-    """Lower left corner of a rectangle in mm, and whether it is turned by 90 degrees counter-clockwise."""
+    """Lower left corner (x, y) of a rectangle, mm; ``turned``: True if rotated by 90 degrees counter-clockwise."""
 
     x: float
     y: float
@@ -23,7 +23,7 @@ class PackedPosition:
 
 @dataclass(frozen=True, slots=True)
 class PackingArea:
-    """A rectangle to pack into: width and depth in mm, the free border, and the least gap between rectangles."""
+    """A rectangle to pack into, mm: width (x), depth (y), free border ``margin``, least gap ``spacing`` of parts."""
 
     width: float
     depth: float
@@ -32,12 +32,12 @@ class PackingArea:
 
 
 def pack(sizes: Sequence[tuple[float, float]], area: PackingArea, where: str = "tray") -> list[PackedPosition]:
-    """Places for rectangles of ``sizes`` (width, depth; mm), in their order; the same for the same input.
+    """Positions of rectangles of ``sizes`` (width, depth; mm), in the order of ``sizes``.
 
-    Rectangles are placed by the length of their shorter side, which stands across the row: equal ones share rows, and
-    gaps of earlier rows are filled. Both orientations are tried; the one whose rows are less deep in all is taken.
+    Two layouts are tried: all longer sides along the rows, and all across them. In each the deepest rectangle is placed
+    first, and gaps of earlier rows are filled. The layout that holds more is taken, of two equal ones the less deep.
 
-    Raises InputError, stating how many fit, where not all do.
+    Raises InputError with the number that fits if not all do; ``where`` is the file that the error names.
     """
     trials = [_oriented(sizes, area, flat) for flat in (True, False)]
     count, _, places = min(trials, key=lambda trial: (-trial[0], trial[1]))
@@ -52,9 +52,9 @@ def pack(sizes: Sequence[tuple[float, float]], area: PackingArea, where: str = "
 
 
 def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[PackedPosition | None]:
-    """Places for rectangles in their order, row after row, none turned; None for one that does not fit.
+    """Positions of rectangles (width, depth; mm) in their order, row after row, none turned; None: does not fit.
 
-    Gaps of earlier rows are filled where not all fit without that, unless plain rows then hold more.
+    Only if not all fit, gaps of earlier rows are filled too, unless that places fewer rectangles.
     """
     boxes = [(width, depth, False) for width, depth in sizes]
     plain = _rows(boxes, range(len(sizes)), area, fill_gaps=False)[1]
@@ -68,7 +68,7 @@ def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[Pac
 def _oriented(
     sizes: Sequence[tuple[float, float]], area: PackingArea, flat: bool
 ) -> tuple[int, float, list[PackedPosition | None]]:
-    """Number of rectangles placed, the depth taken, and the places; ``flat`` puts the longer sides along the row."""
+    """Number of rectangles placed, depth used (mm) and positions; ``flat`` puts the longer sides along the rows."""
     boxes = [_box(size, area, flat) for size in sizes]
     order = sorted(range(len(sizes)), key=lambda k: (-boxes[k][1], -boxes[k][0], k))
     depth, places = _rows(boxes, order, area, fill_gaps=True)
@@ -78,9 +78,9 @@ def _oriented(
 def _rows(
     boxes: Sequence[tuple[float, float, bool]], order: Sequence[int], area: PackingArea, *, fill_gaps: bool
 ) -> tuple[float, list[PackedPosition | None]]:
-    """The depth taken, and places of boxes (width, depth, turned); ``order`` is that of placing.
+    """Depth used (mm), and positions of boxes (width, depth, turned), placed in the order of the indices ``order``.
 
-    ``fill_gaps`` tries every row, the first one first, and places on whole micrometres; else the last row alone.
+    With ``fill_gaps`` a box goes into the first row with space, at whole micrometres; without, into the last row only.
     """
     places: list[PackedPosition | None] = [None] * len(boxes)
     rows: list[list[float]] = []  # y, depth, x where the next one may start
@@ -102,7 +102,7 @@ def _rows(
 
 
 def _box(size: tuple[float, float], area: PackingArea, flat: bool) -> tuple[float, float, bool]:
-    """Width, depth and whether turned: as ``flat`` requires, else the orientation that fits at all."""
+    """Width, depth (mm), True if turned: depth is the shorter side if ``flat``, else the longer, where that fits."""
     options = [(size[0], size[1], False), (size[1], size[0], True)]
     options.sort(key=lambda option: (option[1] if flat else option[0], option[2]))
     within = (
@@ -116,6 +116,6 @@ def _fits(start: float, length: float, whole: float, area: PackingArea) -> bool:
 
 
 def _up(length: float) -> float:
-    """The next whole micrometre that is not less."""
+    """A length (mm) rounded up to whole micrometres."""
     rounded = round(length, _DECIMALS)
     return rounded if rounded >= length - _ROUNDING else round(rounded + 10**-_DECIMALS, _DECIMALS)

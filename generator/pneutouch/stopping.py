@@ -1,4 +1,4 @@
-"""Stop signals held back while files are moved or removed, so that a stop finds them whole or not at all."""
+"""Stop signals held back while files are moved or removed, so that a stop leaves no file or folder half done."""
 
 import contextlib
 import shutil
@@ -15,9 +15,9 @@ STOPS = (signal.SIGINT, signal.SIGTERM)
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold back Ctrl-C and SIGTERM until the block ends; they then take their course.
+    """Hold back Ctrl-C, SIGTERM and SIGALRM while the block runs, then deliver the first one that came.
 
-    Keep the block short. Outside the main thread, which alone receives signals in Python, nothing has to be held.
+    Only signals with a Python handler are held, and only in the main thread, which alone receives them. Keep it short.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -27,7 +27,7 @@ def uninterrupted() -> Iterator[None]:
     def hold(number: int, frame: FrameType | None) -> None:
         held.append(number)
 
-    # What was not set from Python can neither be restored nor raises anything.
+    # A handler that was not set from Python cannot be restored, and it raises no exception in the block.
     before = {number: handler for number in (*STOPS, signal.SIGALRM) if callable(handler := signal.getsignal(number))}
     try:
         for number in before:
@@ -41,13 +41,13 @@ def uninterrupted() -> Iterator[None]:
 
 
 def refuse_stopped() -> None:
-    """Raise KeyboardInterrupt after a stop that a library has swallowed: its results since then may be wrong."""
+    """Raise KeyboardInterrupt if the command line got a stop that a library swallowed: its results may be wrong."""
     if any(getattr(signal.getsignal(number), "received", None) is not None for number in STOPS):
         raise KeyboardInterrupt
 
 
 def cleaned(clean: Callable[[], object]) -> None:
-    """Run a clean-up, which may run twice, so that a stop signal neither skips it nor cuts it short."""
+    """Run ``clean`` so that a stop signal neither skips it nor cuts it short; after a stop it runs a second time."""
     try:
         with uninterrupted():
             clean()
@@ -58,9 +58,9 @@ def cleaned(clean: Callable[[], object]) -> None:
 
 @contextlib.contextmanager
 def temporary_folder(*, prefix: str = "pneutouch-", within: Path | None = None) -> Iterator[Path]:
-    """A new folder, in ``within`` or in the system's folder for temporary files, removed with its content at the end.
+    """A new folder in ``within`` (None: the system's temporary folder), removed with its content after the block.
 
-    The standard library's own loses the folder where a stop comes between its making and its noting.
+    `tempfile.TemporaryDirectory` leaves the folder behind if a stop signal comes just after its creation.
     """
     folder: Path | None = None
 
@@ -78,7 +78,7 @@ def temporary_folder(*, prefix: str = "pneutouch-", within: Path | None = None) 
 
 @contextlib.contextmanager
 def parent_folders(path: Path) -> Iterator[None]:
-    """Make the folders that ``path`` lies in; those made here go again where the block ends by an error."""
+    """Make the folders that contain ``path``; if the block raises, those made here are removed again if empty."""
     made = [folder for folder in path.absolute().parents if not folder.exists()]
 
     def remove() -> None:

@@ -1,7 +1,7 @@
-"""The one unit system: mm, N and MPa inside; kPa and mL where numbers enter and leave.
+"""The unit system: mm, N and MPa inside the program; kPa and mL where numbers enter and leave it.
 
-These three are consistent, so no factor stands in any formula. Names that leave the program carry
-their unit (``driving_pressure_kPa``); names inside it do not.
+1 MPa is 1 N/mm2, so no formula needs a factor. A sensitivity alone is in kPa/N everywhere. Names that leave the program
+carry their unit (``driving_pressure_kPa``); names inside it do so only for other units than mm, N and MPa.
 """
 
 KPA = 1e-3
@@ -14,10 +14,10 @@ UM = 1e-3
 """One micrometre in millimetres."""
 
 STANDARD_ATMOSPHERE = 101.325 * KPA
-"""The paper never gives its p_m; only the atmosphere makes its eq. (15) consistent (gauge pressures)."""
+"""Ambient pressure in MPa: the paper gives none; its eq. 15, in gauge pressures, is right for one atmosphere only."""
 
 GAUGE_LIMIT = 100.0 * KPA
-"""Range of the SMC PSE543-R06 pressure sensor, +-100 kPa (paper, Supplement C)."""
+"""Upper end in MPa of the range of the SMC PSE543-R06 pressure sensor, +-100 kPa (paper, Supplement C)."""
 
 
 def grams(volume_mm3: float, density_g_per_cm3: float) -> float:

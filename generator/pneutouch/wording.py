@@ -1,6 +1,6 @@
-"""Numbers as documents and texts give them: rounded, counted and listed; and the mark of simulated data.
+"""Numbers and words for documents and texts: rounding, counts, lists, Markdown; and the mark of simulated data.
 
-They are rounded because the last bits differ between processors, and no figure needs them.
+Numbers are rounded because their last bits differ between processors, and no figure needs these bits.
 """
 
 import math
@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar, cast
 
 SIMULATED = "SIMULATED DATA"
-"""Stands before every figure that no sensor was measured for, on screen and sheet."""
+"""Mark before every figure that comes from simulated runs, on screen and on sheets."""
 
 _ROUNDING = 1e-9
 
@@ -17,7 +17,7 @@ _Json = TypeVar("_Json")
 
 
 def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
-    """A JSON value with every float to ``digits`` significant digits; those below ``nothing`` are 0."""
+    """A JSON value or dataclass with floats to ``digits`` significant digits, 0 if smaller in size than ``nothing``."""
     result: Any = value
     if isinstance(value, float):
         result = float(f"{value:.{digits}g}") + 0.0 if abs(value) >= nothing else 0.0
@@ -32,7 +32,7 @@ def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
 
 
 def tenths_below(value: float) -> float:
-    """A value rounded down to a tenth, so that a shown rated pressure is never above the true one."""
+    """A value rounded down to a tenth, so that no rated pressure is shown above the true one (but for 1e-10)."""
     return math.floor(10.0 * value + _ROUNDING) / 10.0
 
 
@@ -42,16 +42,16 @@ def markdown_escaped(text: str) -> str:
 
 
 def listed(names: Sequence[str], most: int) -> str:
-    """The first ``most`` names, and how many more there are: ``a, b and 3 more``."""
+    """The first ``most`` names and the number of the others, if there are more: ``a, b and 3 more``."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(names[:most])}{more}"
 
 
 def enumerated(words: Sequence[str]) -> str:
-    """Words in a row: ``a, b and c``."""
+    """Words joined by commas and a last "and": ``a, b and c``; no words give an empty text."""
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def counted(count: int, one: str, many: str = "") -> str:
-    """``1 design``, ``2 designs``; ``many`` where the plural is not the singular with an s: ``2 bodies``."""
+    """A count with its noun: ``1 design``, ``2 designs``; ``many`` is the plural if it is not ``one`` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"

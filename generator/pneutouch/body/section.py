@@ -1,4 +1,4 @@
-"""Points inside a solid and its level sections, computed from its exact shapes without a mesh.
+"""Points inside a solid and its sections at a height z, from its exact shapes without a mesh; sections across y.
 
 An outline is cut exactly at a level. A piece includes its lower end but not its upper end, and a point on a crossing
 counts as beyond it: where two bodies meet, a point belongs to exactly one of them.
@@ -23,7 +23,7 @@ _ON_AXIS = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class RisingPiece:
-    """Part of an outline between two levels, mm, that crosses each level between them exactly once."""
+    """Part of an outline that crosses each level from ``low`` to ``high`` (mm) once; ``side``: which half of an arc."""
 
     low: float
     high: float
@@ -31,7 +31,7 @@ class RisingPiece:
     side: float = 1.0
 
     def at(self, level: Array) -> Array:
-        """First coordinate of the crossings at levels of any shape."""
+        """First coordinate (mm) of the crossings at levels (mm; array of any shape)."""
         piece = self.piece
         if isinstance(piece, Arc):
             inside = np.maximum(piece.radius**2 - (level - piece.centre[1]) ** 2, 0.0)
@@ -45,7 +45,7 @@ class RisingPiece:
 
 
 def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
-    """Rising pieces of a closed outline; an outline that ends on the axis is closed along it."""
+    """Parts of an outline that cross each level once; an outline with two ends on the axis is closed along it."""
     if math.dist(outline[0].start, outline[-1].end) > _ON_AXIS:
         outline = [*outline, Line(outline[-1].end, outline[0].start, "axis")]
     starts = [piece.start[1] for piece in outline]
@@ -59,13 +59,13 @@ def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
 
 
 def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
-    """First coordinates at which a level crosses the outline, ascending and even in number: in, out, in, out."""
+    """First coordinates (mm) at which a level crosses the outline, ascending: in, out, in, out."""
     radii = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
     return sorted(0.0 if abs(r) < _ON_AXIS else r for r in radii)
 
 
 def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
-    """True for points (along, level), arrays (n,) in mm, inside the outline."""
+    """Mask (n,) of the points (along, level), arrays (n,) in mm, inside the outline made of ``parts``."""
     inside = np.zeros(len(along), bool)
     for part in parts:
         at = part.at(level)
@@ -75,7 +75,7 @@ def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
 
 
 def _monotone(piece: Segment, first: float, last: float) -> list[tuple[float, float, float]]:
-    """Parts that are monotone in level: first and last level, and side of the centre; an arc is cut at its extremes."""
+    """Monotone parts of ``piece``, an arc cut at its extremes: first and last level, side of the centre (+1 or -1)."""
     if not isinstance(piece, Arc):
         return [(first, last, 1.0)]
     low, high = sorted((piece.first, piece.last))
@@ -101,13 +101,13 @@ class Window:
         return square
 
     def within(self, low: Array, high: Array) -> tuple[slice, slice]:
-        """Rows and columns inside a box, given by its corners (at least 2,); x and y may ascend or descend."""
+        """Slices of the rows and the columns inside a box with corners (x, y, ...), mm; x and y may also descend."""
         return _span(self.y, low[1], high[1]), _span(self.x, low[0], high[0])
 
 
 @dataclass(frozen=True)
 class _Tool:
-    """A shape that is added or cut, with its bounding box and its outline."""
+    """A shape with the corners ``low`` and ``high`` (3,) of its bounding box and its outline (empty for a bore)."""
 
     shape: Shape
     low: Array
@@ -116,7 +116,7 @@ class _Tool:
 
 
 def _inside(tool: _Tool, points: Array) -> Flags:
-    """True for the points (n, 3) in mm inside the shape of a tool, (n,)."""
+    """Mask (n,) of the points (n, 3) in mm inside the shape of a tool."""
     shape = tool.shape
     if isinstance(shape, Bore):
         near = (points[:, 0] - shape.x) ** 2 + (points[:, 1] - shape.y) ** 2 < shape.radius**2
@@ -130,7 +130,7 @@ def _inside(tool: _Tool, points: Array) -> Flags:
 
 
 class SolidSection:
-    """Point and section tests for the inside of a solid; what does not depend on the section is computed once."""
+    """Tests for points inside a solid; bounding boxes and outlines are computed once for all tests."""
 
     def __init__(self, solid: Solid) -> None:
         base = solid.base
@@ -167,7 +167,7 @@ class SolidSection:
 
 
 def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> None:
-    """Set ``inside`` to ``value`` at the points inside a tool; only its bounding box is examined."""
+    """Set ``inside`` (r, c) to ``value`` at the window's centres that lie inside a tool at height ``z`` mm."""
     if not tool.low[2] <= z <= tool.high[2]:
         return
     box = window.within(tool.low, tool.high)
@@ -204,14 +204,14 @@ def _span(centres: Array, low: float, high: float) -> slice:
 
 
 _ASIDE = 1e-4
-"""Offset of the plane that cuts a mesh, mm: whole rows of vertices lie on y = 0 itself."""
+"""Offset of the plane that cuts a mesh, mm: at y = 0 itself it would meet whole rows of vertices."""
 
 
 def section_outline(solid: Solid, tolerance: float) -> list[Array]:
     """Loops (n, 2) of (x, z) in mm where the plane y = 0 cuts a solid, within ``tolerance`` mm.
 
-    For a turned body they are computed from its meridian and the bores that the plane meets, without a mesh: a tenth of
-    the time of meshing and cutting. A body with added or cut shapes is cut as a mesh.
+    For a turned body with no more than bores they come from its meridian and the bores that the plane meets, in a tenth
+    of the time of meshing and cutting. Other solids are meshed and cut.
     """
     if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
         return _cut(solid, tolerance)
@@ -220,7 +220,7 @@ def section_outline(solid: Solid, tolerance: float) -> list[Array]:
 
 
 def _turned(meridian: Meridian, tolerance: float) -> list[Array]:
-    """Loops of both sides of a meridian: one if it ends on the axis, two if it closes away from the axis."""
+    """Loops (n, 2) of both sides of a meridian: one if it ends on the axis, two if it closes away from the axis."""
     right = np.array([(ring.radius, ring.height) for ring in sample(meridian, tolerance)])
     left = right[::-1] * np.array([-1.0, 1.0])
     if meridian.is_ring:
@@ -229,7 +229,7 @@ def _turned(meridian: Meridian, tolerance: float) -> list[Array]:
 
 
 def _opening(bore: Bore) -> Array:
-    """Rectangle that a bore removes; it extends a millimetre past open faces, like the drill in a mesh."""
+    """Corners (4, 2) in (x, z) of the rectangle that a bore removes, 1 mm past open faces as in `Bore.mesh`."""
     half = math.sqrt(bore.radius**2 - bore.y**2)
     low = bore.low if bore.closed == "low" else bore.low - 1.0
     high = bore.high if bore.closed == "high" else bore.high + 1.0
@@ -244,7 +244,7 @@ def _without(loops: list[Array], holes: list[Array]) -> list[Array]:
 
 
 def mesh_outline(body: Body, height: float = 0.0) -> list[Array]:
-    """Loops (n, 2) of (x, z) in mm where the plane y = ``height`` cuts the mesh of a body."""
+    """Loops (n, 2) of (x, z) in mm where the plane y = ``height`` - 1e-4 mm (`_ASIDE`) cuts the mesh of a body."""
     upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     whole = manifold_of(upright, body.triangles)
     return [np.asarray(loop) for loop in whole.slice(_ASIDE - height).to_polygons()]

@@ -28,9 +28,9 @@ _AXIS_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class MeridianVertex:
-    """A vertex of the sampled meridian: ``lean`` is the radial part of the surface normal there (0 to 1).
+    """A vertex of a sampled meridian, mm; revolved it is a circle (ring). ``lean``: radial part of the normal, 0 to 1.
 
-    A ring on a face that leans little can be cut into fewer parts at the same error.
+    A ring where the normal is nearly along the axis can have fewer vertices at the same error of the surface.
     """
 
     radius: float
@@ -39,7 +39,7 @@ class MeridianVertex:
 
 
 def chords(arc: Arc, error: float) -> int:
-    """Number of chords that keep an arc within ``error`` mm if they preserve its area."""
+    """Number of chords, placed to preserve the area under ``arc``, that keeps it within ``error`` mm."""
     sagitta = min(1.5 * error, arc.radius)
     widest = 2 * math.acos(1 - sagitta / arc.radius)
     turn = abs(arc.last - arc.first)
@@ -48,7 +48,7 @@ def chords(arc: Arc, error: float) -> int:
 
 
 def sample(meridian: Meridian, error: float) -> list[MeridianVertex]:
-    """Vertices (rings) of a meridian whose arcs stay within ``error`` mm; the first is not repeated at the end."""
+    """Vertices of a meridian with arcs kept within ``error`` mm; the first is not repeated at the end."""
     rings: list[MeridianVertex] = []
     for piece in meridian.pieces:
         rings.append(MeridianVertex(*piece.start, lean=1.0))
@@ -68,7 +68,7 @@ def _inner_rings(arc: Arc, count: int) -> list[MeridianVertex]:
 
 
 def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
-    """Corners of a closed outline, with arcs within ``error`` mm and the area preserved."""
+    """Corners (x, y) of a closed outline, with arcs kept within ``error`` mm and the area preserved."""
     corners: list[Point] = []
     for piece in outline:
         corners.append(piece.start)
@@ -78,7 +78,7 @@ def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
 
 
 def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
-    """Number of vertices, a multiple of four, that keeps a widened polygon within ``error`` mm of its circle."""
+    """Number of vertices of a ring: a multiple of 4 that keeps it within ``error`` mm of its circle; 1 on the axis."""
     if radius <= 0:
         return 1
     # widen() moves a vertex outwards by r theta^2/12 to leading order; theta is the angle between vertices.
@@ -90,7 +90,7 @@ def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
 
 
 def widen(count: int) -> float:
-    """Factor on the radius that gives a regular polygon the area of the circle."""
+    """Factor on the radius that gives a regular polygon of ``count`` vertices the area of its circle; 1 for 1."""
     if count == 1:
         return 1.0
     angle = 2 * math.pi / count
@@ -99,10 +99,10 @@ def widen(count: int) -> float:
 
 @dataclass(frozen=True)
 class RevolvedRings:
-    """A revolved meridian before its strips are joined.
+    """Mesh of a revolved meridian, still in strips between neighbouring rings.
 
-    ``starts`` and ``counts`` locate the vertices of each ring; ``pairs`` are the two rings of each strip, in the order
-    of the meridian, and ``strips`` the triangles of each strip.
+    Ring k has ``counts[k]`` of the ``vertices`` (n, 3), from ``starts[k]`` on. ``pairs`` are the two rings of each
+    strip, in the order of the meridian, and ``strips`` its triangles (m, 3).
     """
 
     rings: list[MeridianVertex]
@@ -114,9 +114,9 @@ class RevolvedRings:
 
 
 def revolve_rings(meridian: Meridian, tolerance: float) -> RevolvedRings:
-    """Mesh of a solid of revolution as separate strips.
+    """Mesh of a solid of revolution within ``tolerance`` mm, in strips between neighbouring rings.
 
-    Half of ``tolerance`` (mm) is used for the chords of the meridian and half for those of the circles.
+    Half of ``tolerance`` is used for the chords of the meridian and half for those of the circles.
     """
     error = 0.5 * tolerance
     rings = sample(meridian, error)
@@ -149,7 +149,7 @@ def _ring_points(ring: MeridianVertex, count: int) -> Array:
 
 
 def _zip(first: int, n: int, second: int, m: int) -> Indices:
-    """Triangles between two rings, with ``n`` vertices from ``first`` and ``m`` vertices from ``second`` on.
+    """Triangles (k, 3) between two rings: ``n`` vertices from number ``first`` on and ``m`` from ``second`` on.
 
     Walks along both rings at once; each step is on the ring whose next vertex has the smaller angle.
     """
@@ -172,7 +172,7 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Position of a shape: its z axis is along ``axis`` and its x axis along ``across`` (unit, orthogonal)."""
+    """Coordinates of a shape: ``origin`` (mm) and unit vectors ``axis`` (z) and ``across`` (x), orthogonal."""
 
     origin: Vector = (0.0, 0.0, 0.0)
     axis: Vector = Z
@@ -180,17 +180,17 @@ class Frame:
 
     @property
     def rotation(self) -> Array:
-        """Matrix (3, 3) whose columns are the frame's x, y and z axes."""
+        """Matrix (3, 3) whose columns are the frame's x, y and z axes in coordinates of the solid."""
         x, z = np.array(self.across), np.array(self.axis)
         return np.column_stack([x, np.cross(z, x), z])
 
     def out(self, points: Array) -> Array:
-        """Points (n, 3), given in this frame, in the design frame."""
+        """Points (n, 3), mm, from coordinates of this frame into those of the solid."""
         moved: Array = points @ self.rotation.T + np.array(self.origin)
         return moved
 
     def into(self, points: Array) -> Array:
-        """Points (n, 3), given in the design frame, in this frame."""
+        """Points (n, 3), mm, from coordinates of the solid into those of this frame."""
         moved: Array = (points - np.array(self.origin)) @ self.rotation
         return moved
 
@@ -202,7 +202,7 @@ class Shape(Protocol):
         """Exact volume, mm3."""
 
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
-        """Closed mesh within ``tolerance``."""
+        """Vertices (n, 3) and triangles (m, 3) of a closed mesh within ``tolerance``."""
 
     def distance(self, points: Array) -> Array:
         """Distances (n,) of points (n, 3) from the surface."""
@@ -220,7 +220,7 @@ class Turned:
         return self.meridian.volume()
 
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
-        """Closed mesh within ``tolerance`` mm."""
+        """Vertices (n, 3), mm, and triangles (m, 3) of a closed mesh within ``tolerance`` mm."""
         vertices, triangles = revolve(self.meridian, tolerance)
         return (vertices if self.frame == Frame() else self.frame.out(vertices)), triangles
 
@@ -247,7 +247,7 @@ class Prism:
         return self.area() * (self.high - self.low)
 
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
-        """Closed mesh within ``tolerance`` mm."""
+        """Vertices (n, 3), mm, and triangles (m, 3) of a closed mesh within ``tolerance`` mm."""
         from manifold3d import CrossSection
 
         raised = CrossSection([polygon(self.outline, tolerance)]).extrude(self.high - self.low).to_mesh64()
@@ -268,7 +268,7 @@ class Prism:
 
 @dataclass(frozen=True, slots=True)
 class Bore:
-    """A round hole along z: centre (x, y), radius, lower and upper end, mm; ``closed`` names the end with a bottom."""
+    """A round hole along z, mm: centre (x, y), radius, ends ``low`` and ``high``; ``closed``: the end with a bottom."""
 
     x: float
     y: float
@@ -278,11 +278,11 @@ class Bore:
     closed: Literal["", "low", "high"] = ""
 
     def volume(self) -> float:
-        """Volume removed, mm3."""
+        """Exact volume between the two ends, mm3."""
         return math.pi * self.radius**2 * (self.high - self.low)
 
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
-        """Mesh of the drill, which extends 1 mm past open faces, so that no two faces coincide."""
+        """Vertices (n, 3) and triangles (m, 3) of the drill: 1 mm longer at open ends, so that no faces coincide."""
         count = circle_count(self.radius, tolerance)
         angle = 2 * np.pi * np.arange(count) / count
         ring = self.radius * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)]) + [self.x, self.y]
@@ -296,7 +296,7 @@ class Bore:
         return vertices, np.concatenate([*sides, fan[:, ::-1], fan + count])
 
     def distance(self, points: Array) -> Array:
-        """Distances (n,) of points (n, 3) from the bore's wall and from its bottom, if it has one."""
+        """Distances (n,) of points (n, 3), mm, from the wall of the bore or its bottom, whichever is nearer."""
         radial = np.hypot(points[:, 0] - self.x, points[:, 1] - self.y) - self.radius
         axial = np.maximum(np.maximum(self.low - points[:, 2], points[:, 2] - self.high), 0.0)
         wall: Array = np.hypot(radial, axial)
@@ -309,7 +309,7 @@ class Bore:
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """A shape added to or cut from a solid, and ``net``, the exact volume in mm3 that it adds or removes."""
+    """A shape added to or cut from a solid, and the volume ``net`` (mm3) that this adds or removes: without overlap."""
 
     shape: Shape
     net: float

@@ -1,8 +1,8 @@
 """A body as an exact solid, a turned body or a prism with shapes added and cut, and as a print mesh with its measures.
 
-Vertices are (n, 3) in mm, triangles (m, 3) counter-clockwise seen from outside. A face with the openings of holes is
-triangulated in its plane without them, and the wall of each hole is a strip between two circles: no meshes are
-intersected, so there are no slivers and no dependence on a tolerance.
+Vertices are (n, 3) in mm, triangles (m, 3) counter-clockwise seen from outside. Bores between flat faces of a turned
+body are meshed directly, without slivers: each face is triangulated around the openings, and the wall of each bore is a
+strip between two circles. Other bores and all shapes added or cut are joined as meshes by manifold3d.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def enclosed_volume(vertices: Array, triangles: Indices) -> float:
 
 
 def is_closed(triangles: Indices, count: int) -> bool:
-    """True if every edge between ``count`` vertices is shared by exactly two triangles, in opposite directions."""
+    """True if every edge of a mesh of ``count`` vertices is in exactly two triangles, in opposite directions."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     key, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
     return len(distinct(key)) == len(key) and bool(np.array_equal(np.sort(key), np.sort(back)))
@@ -49,7 +49,7 @@ def mesh_of(manifold: Any) -> tuple[Array, Indices]:
 
 
 def welded(vertices: Array, triangles: Indices) -> tuple[Array, Indices]:
-    """Mesh as read back from a file: vertices rounded to float32 and merged by position."""
+    """Vertices and triangles as read back from a file: rounded to float32, vertices of equal position merged."""
     single = vertices.astype(np.float32).astype(np.float64)
     merged, index = np.unique(single, axis=0, return_inverse=True)
     return merged, index.reshape(-1)[triangles]
@@ -57,7 +57,7 @@ def welded(vertices: Array, triangles: Indices) -> tuple[Array, Indices]:
 
 @dataclass(frozen=True, repr=False)
 class Body:
-    """A closed triangle mesh with a material and a role.
+    """A closed triangle mesh with a material and a role (the function of the body, as in `Solid`).
 
     ``vertices`` is (n, 3) in mm, ``triangles`` (m, 3) indices, counter-clockwise seen from outside.
     """
@@ -73,7 +73,7 @@ class Body:
 
     @property
     def corners(self) -> Array:
-        """Triangle corners, shape (m, 3, 3)."""
+        """Corners of the triangles (m, 3 corners, 3 coordinates), mm."""
         return self.vertices[self.triangles]
 
     @property
@@ -91,7 +91,7 @@ class Body:
         return is_closed(self.triangles, len(self.vertices))
 
     def welded(self) -> Body:
-        """The body as read back from a file: vertices rounded to float32 and merged by position."""
+        """The body as read back from a file: rounded to float32, vertices of equal position merged."""
         vertices, indices = welded(self.vertices, self.triangles)
         return replace(self, vertices=vertices, triangles=indices)
 
@@ -108,7 +108,7 @@ class Body:
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 
     def surface_points(self, parts: int = 4) -> Array:
-        """Points on every triangle, edges and corners included, for measurement of deviations."""
+        """Points (n, 3), mm, of a grid on every triangle, ``parts`` steps along each edge, to measure deviations."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
         weights = np.array([(i, j, parts - i - j) for i, j in grid], float) / parts
         points: Array = np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3)
@@ -116,14 +116,13 @@ class Body:
 
 
 _EDGE_COSINE = math.cos(math.radians(40))
-"""Cosine of the angle between two triangles from which the line between them is drawn as an edge. Facets of an arc
-within the mesh tolerance meet at a few degrees, the edges of parts at 45 degrees or more."""
+"""Cosine of the least angle between two triangles that share an edge of the part: facets of an arc meet at less."""
 
 
 def corner_normals(body: Body) -> Array:
-    """Unit normals at the corners of every triangle, (m, 3, 3).
+    """Unit normals (m, 3, 3) at the three corners of every triangle of a body.
 
-    The normal at a corner is the mean over the triangles that share its vertex and are within the edge angle of its own
+    The normal at a corner is the mean over the triangles that share its vertex and lean by at most 40 degrees from its
     triangle, weighted by their angles at the vertex (Thürmer and Wüthrich 1998, DOI 10.1080/10867651.1998.10487487).
     """
     face, angle = _face_normals(body.corners)
@@ -142,7 +141,7 @@ def corner_normals(body: Body) -> Array:
 
 
 def _face_normals(corners: Array) -> tuple[Array, Array]:
-    """Unit normals (m, 3) and corner angles (m, 3) of triangles (m, 3, 3); zero for triangles of zero area."""
+    """Unit normals (m, 3) and corner angles (m, 3; rad) of triangles (m, 3, 3); 0 for triangles of no area."""
     along = corners[:, [1, 2, 0]] - corners
     normal = np.cross(along[:, 0], -along[:, 2])
     area = np.linalg.norm(normal, axis=1)
@@ -153,7 +152,7 @@ def _face_normals(corners: Array) -> tuple[Array, Array]:
 
 
 def _pairs(start: Index, stop: Index) -> tuple[Index, Index]:
-    """Row number and index for every index from start to stop of every row, (n,) each."""
+    """Pairs of a row k and an index from ``start[k]`` up to but not ``stop[k]``, row after row: two arrays (n,)."""
     count = stop - start
     owner = np.repeat(np.arange(count.size), count)
     return owner, np.arange(owner.size) - np.repeat(np.cumsum(count) - count - start, count)
@@ -168,7 +167,7 @@ _CLEAR = 0.05
 
 @dataclass(frozen=True, slots=True)
 class _Hole:
-    """A bore with the numbers of the first vertices of its lower and its upper circle."""
+    """A bore, the ``count`` of vertices of each end circle, and the first vertex of the lower and the upper circle."""
 
     bore: Bore
     count: int
@@ -177,9 +176,10 @@ class _Hole:
 
 
 def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
-    """Mesh of the turned body with its bores, or None if a bore does not run between flat faces and must be cut.
+    """Vertices (n, 3) and triangles (m, 3) of a turned body with its bores; None if a bore must be cut from its mesh.
 
-    The rings use half of ``tolerance`` (mm); the circle of a bore may use all of it, because the bore is straight.
+    It must be cut if it opens outside flat faces or nearer than `_CLEAR` to an edge or another bore. The rings use half
+    of ``tolerance`` (mm), the circles of the straight bores all of it.
     """
     faces = _faces(rings, bores)
     if faces is None:
@@ -201,7 +201,7 @@ def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> 
 
 
 def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]] | None:
-    """Flat strips in which bores open, with the indices of these bores; None if a bore must be cut."""
+    """Numbers of the flat strips in which bores open, with the indices of these bores; None as in `drilled`."""
     faces: dict[int, list[int]] = {}
     for index, bore in enumerate(bores):
         for height in ([bore.low] if bore.closed != "low" else []) + ([bore.high] if bore.closed != "high" else []):
@@ -218,7 +218,7 @@ def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]
 
 
 def _holds(rings: RevolvedRings, k: int, bore: Bore, height: float) -> bool:
-    """True if strip ``k`` is flat, at ``height``, and leaves enough material around a bore."""
+    """True if strip ``k`` lies flat at ``height`` (mm) and leaves more than `_CLEAR` of material around a bore."""
     one, other = (rings.rings[index] for index in rings.pairs[k])
     if abs(one.height - height) > _SAME or abs(other.height - height) > _SAME:
         return False
@@ -235,7 +235,7 @@ def _circle(bore: Bore, count: int, height: float) -> Array:
 
 
 def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole]) -> Indices:
-    """Triangles of a flat strip with holes, oriented like the strip."""
+    """Triangles (m, 3) of the flat strip ``k`` with holes, facing to the same side as the strip."""
     from manifold3d import triangulate
 
     first, second = rings.pairs[k]
@@ -256,7 +256,7 @@ def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole])
 
 
 def _wall(hole: _Hole) -> list[Indices]:
-    """Triangles of the wall of a hole, facing its axis, and of its bottom if it has one."""
+    """Arrays (m, 3) of triangles: the wall of a hole, facing its axis, and its bottom if it has one."""
     k = np.arange(hole.count)
     after = (k + 1) % hole.count
     low, high = hole.lower, hole.upper
@@ -270,7 +270,7 @@ def _wall(hole: _Hole) -> list[Indices]:
 
 @dataclass(frozen=True)
 class Solid:
-    """One body as designed, exact. ``role`` is its function: membrane, connector, ring, plug, coupon ...
+    """One body as exact shapes, mm. ``role`` is its function: membrane, connector, ring, plug, coupon ...
 
     ``base`` is a meridian about the z axis or a prism. First ``adds`` are joined to it; then ``bores`` and ``cuts`` are
     removed. Bores lie wholly inside the solid and do not touch one another.
@@ -307,13 +307,13 @@ class Solid:
         return grams(self.volume, self.material.density_g_per_cm3.nominal)
 
     def distance(self, points: Array) -> Array:
-        """Distances, shape (n,), of (n, 3) points in mm from the exact surfaces that bound the solid."""
+        """Distances (n,) of points (n, 3), mm, from the nearest surface of any of its shapes, covered parts too."""
         shapes = [self.base, *self.bores, *(feature.shape for feature in (*self.adds, *self.cuts))]
         nearest: Array = np.min([shape.distance(points) for shape in shapes], axis=0)
         return nearest
 
     def mesh(self, tolerance: float) -> Body:
-        """The print mesh, within ``tolerance`` mm of the exact surface."""
+        """The body with its print mesh, within ``tolerance`` mm of the exact surface."""
         (vertices, triangles), bores = self._drilled(tolerance)
         tools: list[Shape] = [*bores, *(feature.shape for feature in self.cuts)]
         if self.adds or tools:
@@ -322,7 +322,7 @@ class Solid:
         return Body(self.name, self.role, self.material, vertices, triangles)
 
     def _drilled(self, tolerance: float) -> tuple[tuple[Array, Indices], tuple[Bore, ...]]:
-        """Mesh of the base, and the bores still to be cut; most bores are meshed directly in flat faces."""
+        """Mesh of the base, with its bores if all can be meshed directly, and the bores still to be cut."""
         if not isinstance(self.base, Meridian):
             return self.base.mesh(tolerance), self.bores
         rings = revolve_rings(self.base, tolerance)
@@ -335,7 +335,7 @@ class Solid:
 def _combined(
     base: tuple[Array, Indices], adds: list[tuple[Array, Indices]], cuts: list[tuple[Array, Indices]]
 ) -> tuple[Array, Indices]:
-    """Mesh of a base with one batch of meshes joined and one batch cut."""
+    """Mesh of ``base`` with the meshes ``adds`` joined to it and then the meshes ``cuts`` removed."""
     from manifold3d import Manifold, OpType
 
     whole = manifold_of(*base)

@@ -1,7 +1,7 @@
-"""Form of a membrane: one meridian, from which solid, print mesh, mould and finite elements are derived."""
+"""Shapes of the dome; solid, print mesh, mould and finite elements of a membrane are derived from its shape."""
 
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere
 
 SHAPES: dict[str, type[DomeShape]] = {shape.key: shape for shape in (Hemisphere,)}
-"""Shapes by their name in a design file; called with inner radius and wall thickness, mm."""
+"""Classes of shapes by their name in a design file; called with inner radius and wall thickness, mm."""

@@ -23,7 +23,7 @@ class DomeShape(ABC):
 
     This is a base class, not a protocol: a shape defines its faces and inherits all derived quantities. Each face is a
     chain of pieces from the base to the pole. Pieces with the same index are opposite each other: straight lines across
-    the wall connect equal shares of their lengths. Further sizes of a shape are further fields. ``inner_radius`` is the
+    the wall connect equal shares of their lengths. A shape with more sizes adds fields for it. ``inner_radius`` is the
     radius of the inner face at the base, ``key`` the name in a design file, ``adjective`` the shape in words.
     """
 
@@ -35,16 +35,16 @@ class DomeShape(ABC):
     @property
     @abstractmethod
     def inner(self) -> tuple[Segment, ...]:
-        """Pieces of the wetted face, tagged `INNER_WALL`."""
+        """Pieces of the face towards the cavity, from base to pole, tagged `INNER_WALL`."""
 
     @property
     @abstractmethod
     def outer(self) -> tuple[Segment, ...]:
-        """Pieces of the face that is pressed, tagged `OUTER_WALL`."""
+        """Pieces of the face that is pressed, from base to pole, tagged `OUTER_WALL`."""
 
     @property
     def scale(self) -> float:
-        """Length with which the wall's mechanics scales; the unit of length of the solid's nondimensional numbers."""
+        """Unit of length (mm) of the solid's dimensionless quantities: the inner radius."""
         return self.inner_radius
 
     @property
@@ -73,7 +73,7 @@ class DomeShape(ABC):
         return sum(piece.length for piece in self.inner), sum(piece.length for piece in self.outer)
 
     def points(self, share: Array, depth: Array) -> Array:
-        """Points (n, m, 2), r and z, of the wall.
+        """Points (n, m, 2) of the wall, r and z in mm.
 
         ``share`` (n,) goes from the base (0) to the pole (1), ``depth`` (m,) from the inner face (0) to the outer (1).
         """
@@ -85,7 +85,7 @@ class DomeShape(ABC):
         return self._of_face(self.outer, share, normals=True)
 
     def leaning(self, lean: float) -> Point:
-        """Point of the outer face whose normal leans by an angle (rad) off the axis, or the nearest such point."""
+        """Point (r, z) of the outer face whose normal is at the angle ``lean`` (rad) to the axis; an end if none is."""
         # The lean is interpolated linearly between the places, which is exact on an arc.
         share = np.linspace(1.0, 0.0, 2001)
         normal = self.normals(share)
@@ -94,9 +94,9 @@ class DomeShape(ABC):
         return r, z
 
     def arc_share(self, radius: Array, height: Array) -> Array:
-        """Arc position of points (r, z), arrays of one shape: 0 at the pole, 1 at the rim and in the flange below it.
+        """Arc position of points (r, z in mm; arrays of one shape): 0 at the pole, 1 at the rim.
 
-        The position is that of the nearest point of the outer face.
+        It is the position of the nearest point of the outer face; points below the base plane count as in that plane.
         """
         points = np.stack([np.ravel(radius), np.maximum(np.ravel(height), 0.0)], axis=1)
         stops, gaps = self._stops, [piece.distance(points) for piece in self.outer]
@@ -105,21 +105,21 @@ class DomeShape(ABC):
         return 1.0 - nearest.reshape(np.shape(radius))
 
     def arc_share_scaled(self, radius: Array, height: Array) -> Array:
-        """`arc_share` of points in units of `scale`, as used by the solid."""
+        """`arc_share` for radii and heights in units of `scale`, as the solid uses them."""
         return self.arc_share(self.scale * radius, self.scale * height)
 
     def weights(self, arc: Array) -> Array:
-        """Weights of arc positions (n,), 0 at the pole, for a mean over the wall: the radii of its rings."""
+        """Weights (n,) of arc positions (n,), 0 at the pole, in a mean over the wall: radius of its middle, mm."""
         return np.asarray(self.points(1.0 - arc, np.array([0.5]))[:, 0, 0])
 
     @property
     def _stops(self) -> Array:
-        """Shares of the length of the wall's middle, 0 to 1, at which the pieces meet."""
+        """Shares (k + 1,) of the wall's mean length, 0 at the base to 1 at the pole, at which its k pieces meet."""
         lengths = [inner.length + outer.length for inner, outer in zip(self.inner, self.outer, strict=True)]
         return np.concatenate([[0.0], np.cumsum(lengths) / np.sum(lengths)])
 
     def _of_face(self, face: tuple[Segment, ...], share: Array, normals: bool = False) -> Array:
-        """Points (n, 2) of a face, or its normals, at shares (n,) of the wall's length."""
+        """Points (n, 2) of a face, or its unit normals, at shares (n,) of the wall's length from the base."""
         stops, values = self._stops, np.empty((share.size, 2))
         piece_at = np.clip(np.searchsorted(stops, share, side="right") - 1, 0, len(face) - 1)
         for k, piece in enumerate(face):

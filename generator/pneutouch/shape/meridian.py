@@ -16,7 +16,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight piece from ``start`` to ``end``; ``tag`` names the face that it sweeps."""
+    """A straight piece from ``start`` to ``end``, (r, z) in mm; ``tag`` names the face that it sweeps."""
 
     start: Point
     end: Point
@@ -69,7 +69,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """A circular piece about ``centre`` from angle ``first`` to ``last`` (rad from the r axis towards z)."""
+    """A circular piece about ``centre`` (r, z; mm) from angle ``first`` to ``last`` (rad from the r axis towards z)."""
 
     centre: Point
     radius: float
@@ -78,23 +78,23 @@ class Arc:
     tag: str
 
     def at(self, angle: float, radius: float | None = None) -> Point:
-        """Point at an angle, on the arc or at another radius about its centre."""
+        """Point (r, z) at ``angle`` (rad) and ``radius`` (mm) about the centre; None: the radius of the arc."""
         rho = self.radius if radius is None else radius
         return self.centre[0] + rho * math.cos(angle), self.centre[1] + rho * math.sin(angle)
 
     @property
     def start(self) -> Point:
-        """First end."""
+        """Point at the angle ``first``."""
         return self.at(self.first)
 
     @property
     def end(self) -> Point:
-        """Last end."""
+        """Point at the angle ``last``."""
         return self.at(self.last)
 
     @property
     def middle(self) -> Point:
-        """Point half way along."""
+        """Point half way along the arc."""
         return self.at(0.5 * (self.first + self.last))
 
     @property
@@ -170,7 +170,7 @@ _CLOSED = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Meridian:
-    """A closed loop of pieces, counter-clockwise in (r, z); it may be closed along the axis r = 0."""
+    """A loop of pieces, counter-clockwise in (r, z), closed in itself or by the axis r = 0; else raises ValueError."""
 
     pieces: tuple[Segment, ...]
 
@@ -195,7 +195,7 @@ class Meridian:
 
     @property
     def is_ring(self) -> bool:
-        """True if the loop closes away from the axis (the solid has a hole along it)."""
+        """True if the pieces themselves close the loop: the solid has a hole along the axis."""
         return math.dist(self.start, self.end) <= _CLOSED
 
     def volume(self) -> float:
@@ -212,7 +212,7 @@ class Meridian:
         return max(b[1] for b in boxes), min(b[2] for b in boxes), max(b[3] for b in boxes)
 
     def distance(self, points: Array) -> Array:
-        """Distances, shape (n,), of (n, 3) points from the exact surface of the solid."""
+        """Distances (n,) in mm of points (n, 3) from the exact surface of the solid of revolution."""
         plane = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
         nearest: Array = np.min([piece.distance(plane) for piece in self.pieces], axis=0)
         return nearest
@@ -222,12 +222,12 @@ TracedPath = list[tuple[str, Point]]
 
 
 def lines_around(corners: Sequence[Point], tag: str = "") -> tuple[Line, ...]:
-    """The straight lines around a polygon."""
+    """Straight lines around a polygon of ``corners`` (r, z), all with the tag ``tag``; the last one closes it."""
     return tuple(Line(a, b, tag) for a, b in pairwise([*corners, corners[0]]))
 
 
 def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:
-    """Meridian of straight faces from ``start`` along ``path``; faces of zero length are left out."""
+    """Meridian of straight faces from ``start`` along ``path``, pairs of tag and end point; none of zero length."""
     faces, here = [], start
     for tag, to in path:
         if math.dist(here, to) > 0.0:
@@ -237,5 +237,5 @@ def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:
 
 
 def cylinder(radius: float, low: float, high: float) -> Meridian:
-    """Meridian of a solid cylinder about the axis."""
+    """Meridian of a solid cylinder about the axis, of ``radius`` from height ``low`` to ``high``, mm."""
     return trace((0.0, low), [("", (radius, low)), ("", (radius, high)), ("", (0.0, high))])
