@@ -1,4 +1,4 @@
-"""Mechanics of a sensor: laws, gas, the membrane theory, and curves turned into figures."""
+"""Mechanics of a sensor: the records of a sensor and of its prediction, and `predict`, which computes one."""
 
 from pneutouch.mechanics.models.choice import MODEL_CHOICES
 from pneutouch.mechanics.predict import predict

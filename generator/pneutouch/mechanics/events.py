@@ -1,6 +1,7 @@
-"""Events under the plate, detected and located, so that no average runs across them.
+"""Events while a sensor is pressed: their kinds, levels and texts, and the place where a curve crosses a level.
 
-This file loads neither the solver nor SciPy, because the atlas detects the same events.
+No figure is averaged across an event that ends its range. This file loads neither the solver nor SciPy, because the
+atlas uses it too.
 """
 
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ OVERHANG = 2.0e-2
 #: The wall lies on its base when it transmits this share of the plate's force to the base.
 BASE_SHARE = 2.0e-2
 
-#: Kinds of events that break the path: a straight-line fit ends before them.
+#: Kinds of events that a straight-line fit to the curve may not include: it ends before the first of them.
 BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
 
 PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
@@ -41,7 +42,7 @@ DETAIL = {
 }
 
 OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the contact"}
-"""Descriptions of the events under another object than a plate."""
+"""Texts of the events for an object other than a plate."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,10 @@ class PathPoint(NamedTuple):
 
 
 def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
-    """Position x at which y rises through a level between two points: on the Hermite cubic if both slopes are known,
-    else on a straight line; None if y does not.
+    """Position x between points a and b at which y rises through ``level``, on the Hermite cubic if both slopes are
+    known, else on a straight line; None if y does not rise through it.
 
-    If both points are the same: its x if its y is at or above the level, else None.
-    """
+    If a and b are equal: their x if their y is at or above the level, else None."""
     if a == b:
         return a.x if a.y >= level else None
     if not a.y < level <= b.y:
@@ -93,7 +93,7 @@ SWAY, LOBES = "sway", "lobes"
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event at an indentation (mm); ``ends_range`` is True if no figure may be fitted beyond it."""
+    """An event of a prediction at an indentation (mm); if ``ends_range``, no figure is fitted beyond it."""
 
     kind: str
     indentation: float
@@ -102,5 +102,5 @@ class Event:
 
 
 def range_end(happened: list[Event], depth: float) -> float:
-    """Indentation (mm) up to which figures may be fitted: the first event that ends the range, else the depth."""
+    """Indentation (mm) up to which figures are fitted: that of the first event that ends the range, else ``depth``."""
     return min((event.indentation for event in happened if event.ends_range), default=depth)

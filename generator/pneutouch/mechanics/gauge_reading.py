@@ -1,4 +1,4 @@
-"""Reading of a pressure gauge: its range, noise, steps and rate as the mechanics uses them."""
+"""Properties of a pressure gauge that limit its readings: range, noise, step, rate and error."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from pneutouch.spec.gauge import Gauge
 
 RECORDER_STEP_V = 20.0 / 2**16
-"""Step of the recorder of an analog gauge, V: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range from NI's
+"""Step in V of the recorder for an analog gauge: 16 bits over +-10 V (NI USB-6341, paper, Supplement C; range from NI's
 manuals)."""
 
 RECORDER_RATE_HZ = 10_000.0
-"""Samples per second of the recorder of an analog gauge (paper, Supplement C)."""
+"""Samples per second of the recorder for an analog gauge (paper, Supplement C)."""
 
 PAPER_STEP = RECORDER_STEP_V * 50.0 * KPA
 """Step of the paper's recorder, MPa: `RECORDER_STEP_V` at 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; an
@@ -29,13 +29,13 @@ PAPER_NOISE = 0.015 * KPA
 PAPER_GAUGE = "SMC PSE543-R06"
 
 SIGMAS = 3.0
-"""Limit of detection: number of standard deviations of the difference of two readings by which a force must move the
-reading. Our choice of the usual value (IUPAC, Pure Appl. Chem. 67, 1699, 1995)."""
+"""Least change of a reading that counts as detected, over the standard deviation of the difference of two readings: the
+usual value (IUPAC, Pure Appl. Chem. 67, 1699, 1995)."""
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeReading:
-    """A gauge on a sensor; pressures in MPa.
+    """A pressure gauge at a given ambient pressure; pressures in MPa.
 
     Attributes:
         title: Name of the gauge.
@@ -58,25 +58,25 @@ class GaugeReading:
 
     @property
     def scatter(self) -> float | None:
-        """Standard deviation of a reading with rounding to steps, which adds step^2/12 (Sheppard); None if noise is."""
+        """Standard deviation of a reading: noise and rounding, which adds step^2/12 (Sheppard); None: noise unknown."""
         return None if self.noise is None else math.hypot(self.noise, (self.step or 0.0) / math.sqrt(12.0))
 
     @property
     def threshold(self) -> float | None:
-        """Smallest pressure difference that two readings can distinguish, at least one step; None if unknown."""
+        """Smallest pressure difference that two readings can distinguish, at least one step; None: noise unknown."""
         scatter = self.scatter
         return None if scatter is None else max(SIGMAS * math.sqrt(2.0) * scatter, self.step or 0.0)
 
     @property
     def limited_by(self) -> str:
-        """Property of the gauge that sets the threshold, in words."""
+        """Property of the gauge that sets `threshold`, in words: its noise or its resolution."""
         if self.noise is None:
             return "not known: the gauge's noise is unknown"
         return "gauge noise" if self.noise >= (self.step or 0.0) / math.sqrt(12.0) else "gauge resolution"
 
 
 def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
-    """Reading of a gauge at an ambient pressure, MPa; of the gauge in the paper's rig if none is given."""
+    """Reading of ``gauge`` at ``ambient_pressure`` (MPa); None stands for the gauge of the paper's rig."""
     if gauge is None:
         return GaugeReading(
             PAPER_GAUGE, -GAUGE_LIMIT, GAUGE_LIMIT, PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ, error=4.0 * KPA
@@ -89,7 +89,7 @@ def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
 
 
 def _pressure(stated_kPa: Quantity | None) -> float | None:
-    """Nominal value of a stated quantity in MPa; None without one."""
+    """Nominal value in MPa of a quantity stated in kPa; None if it is not stated."""
     if stated_kPa is None:
         return None
     value_kPa = stated_kPa.nominal

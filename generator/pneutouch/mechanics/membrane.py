@@ -65,12 +65,12 @@ def relative_pressure(x: Array) -> Array:
 
 
 def thickness_stretch(x: Array) -> Array:
-    """Wall thickness over unloaded wall thickness (eq. 5)."""
+    """Wall thickness over unloaded wall thickness at x = h/R0 (eq. 5)."""
     return 2 / (1 + x**2)
 
 
 def membrane_stretch(x: Array) -> Array:
-    """In-plane stretch, the same in all directions (eq. 3)."""
+    """In-plane stretch at x = h/R0, the same in all directions (eq. 3)."""
     return thickness_stretch(x) ** -0.5
 
 
@@ -93,14 +93,17 @@ LIMIT_PRESSURE = float(relative_pressure(np.array(LIMIT_HEIGHT)))
 
 
 def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -> Array:
-    """Driving pressure in MPa that holds the dome at relative height x (eq. 9)."""
+    """Driving pressure (MPa) that holds a dome at x = h/R0 (eq. 9); lengths in mm, ``shear_modulus`` in MPa."""
     return shear_modulus * wall / inner_radius * relative_pressure(x)
 
 
 def relative_height(
     p: Array, inner_radius: float, wall: float, shear_modulus: float, *, falling: bool = False
 ) -> Array:
-    """Relative heights h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or falling branch."""
+    """Relative heights h/R0 at driving pressures ``p`` (MPa, from 0), on the rising or the ``falling`` branch.
+
+    Raises BeyondLimitError beyond the limit point, and ComputationError for a negative pressure.
+    """
     target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
     if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)):
         scale = shear_modulus * wall / inner_radius
@@ -119,7 +122,7 @@ def relative_height(
 
 
 def limit_point(sensor: Sensor) -> LimitPoint:
-    """The limit point of the paper's membrane: the same stretch for every resin and size."""
+    """The limit point of a sensor by the paper's membrane: its stretch is the same for every resin and size."""
     stretch = float(thickness_stretch(np.array(LIMIT_HEIGHT)))
     apex = LIMIT_HEIGHT * sensor.dome.inner_radius
     scale = sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
@@ -127,11 +130,8 @@ def limit_point(sensor: Sensor) -> LimitPoint:
 
 
 def limits(sensor: Sensor) -> Limits:
-    """Driving pressures at which free inflation, without contact, reaches each limit.
-
-    The break strain is a uniaxial elongation at break; comparing it with the equibiaxial stretch is an assumption,
-    stated with the figures.
-    """
+    """Driving pressures at which free inflation reaches each limit of a sensor; the break stretch, measured in uniaxial
+    tension, is compared with the in-plane stretch: an assumption, stated with the figures."""
     broken = None
     if sensor.wall.break_stretch is not None:
         height = np.sqrt(2 * sensor.wall.break_stretch**2 - 1)
@@ -151,7 +151,7 @@ shooting without the assumption of constant curvature; the tests solve it again 
 
 
 def limit_point_errors() -> tuple[float, float]:
-    """Relative errors of the cap's limit pressure and of its apex height at the limit point."""
+    """Relative errors of the cap against the exact membrane: of the limit pressure, and of the apex height there."""
     pressure, height = RISING_BRANCH[-1]
     return float(LIMIT_PRESSURE / pressure - 1), float(LIMIT_HEIGHT / height - 1)
 
@@ -182,7 +182,7 @@ class PressedCap:
 
 
 def pressed_cap(rho: Array, h: Array, inner_radius: float) -> PressedCap:
-    """Area and volume at contact radii ``rho`` (0 to R0) and plate heights ``h``, broadcast together."""
+    """Area and volume at contact radii ``rho`` (0 to R0) and plate heights ``h``, mm, broadcast together."""
     c = inner_radius - rho
     a = (c**2 + h**2) / (2 * h)
     theta = np.arctan2(c, a - h)
@@ -198,7 +198,7 @@ def pressed_cap(rho: Array, h: Array, inner_radius: float) -> PressedCap:
 
 
 def energy(shear_modulus: float, thickness_stretch: Array) -> Array:
-    """Strain energy per undeformed volume of the wall, MPa."""
+    """Strain energy of the wall per undeformed volume, MPa (N mm/mm3)."""
     return 0.5 * shear_modulus * (thickness_stretch**2 + 2 / thickness_stretch - 3)
 
 
@@ -209,7 +209,7 @@ def energy_slope(shear_modulus: float, thickness_stretch: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class TrappedGas:
-    """A fixed amount of gas, enclosed at ``driving_pressure`` with the cavity at ``cavity_volume``."""
+    """A fixed amount of gas, enclosed at ``driving_pressure`` (gauge) and ``cavity_volume``; MPa, mm3."""
 
     driving_pressure: Array | float
     cavity_volume: Array | float
@@ -222,7 +222,7 @@ class TrappedGas:
         return (self.driving_pressure + self.ambient_pressure) * (self.cavity_volume + self.dead_volume)
 
     def pressure(self, volume: Array) -> Array:
-        """Gauge pressure at a cavity volume."""
+        """Gauge pressure (MPa) at a cavity volume (mm3)."""
         return self.content / (volume + self.dead_volume) - self.ambient_pressure
 
     def pressure_slope(self, volume: Array) -> Array:
@@ -232,7 +232,7 @@ class TrappedGas:
 
 @dataclass(frozen=True, slots=True)
 class PressedStates:
-    """Pressed states; every array has the broadcast shape of driving pressure and indentation."""
+    """Pressed states (mm, mm3, MPa, N); every array has the broadcast shape of driving pressure and indentation."""
 
     contact_radius: Array
     volume: Array
@@ -241,14 +241,14 @@ class PressedStates:
     thickness_stretch: Array
 
     def row(self, k: int) -> PressedStates:
-        """The curve of the k-th driving pressure."""
+        """The states at the k-th driving pressure, the first index of the arrays."""
         return PressedStates(
             self.contact_radius[k], self.volume[k], self.pressure[k], self.force[k], self.thickness_stretch[k]
         )
 
 
 def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> PressedStates:
-    """States of the dome, inflated to height ``apex`` (mm), at ``indentation`` (mm), by the closure of a given name."""
+    """States of the dome, inflated to height ``apex`` (mm), at ``indentation`` (mm); ``closure`` is a name."""
     height = apex - indentation
     model = _BY_NAME[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
@@ -260,7 +260,7 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
 
 @dataclass(frozen=True, slots=True)
 class _Closure:
-    """Common part of both closures; heights broadcast against the gas's driving pressures."""
+    """Common part of both closures: heights of apex and plate, mm, which broadcast with the gas's driving pressures."""
 
     sensor: Sensor
     gas: TrappedGas
@@ -300,7 +300,7 @@ class PrintedClosure(_Closure):
     """Closure by equation 17 as printed."""
 
     def residual(self, rho: Array) -> Array:
-        """Slope of E'_p by the plate height at fixed contact radius, N."""
+        """Slope of eq. 17's potential by the plate height at fixed contact radius, N."""
         cap = self.cap(rho)
         inflated = np.pi * (self.sensor.dome.inner_radius**2 + self.apex**2)
         patch = np.pi * rho**2

@@ -1,4 +1,4 @@
-"""A sensor in a mix of two resins, predicted by every mixing curve of the pair to show their effect."""
+"""Predictions of a sensor in a mix of two resins, one for each mixing curve of the pair, to show how they differ."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pneutouch.spec.printer import Printer
 def curve_outcomes(
     sensor: Sensor, material: Material, printer: Printer, prediction: SensorPrediction, rated: Rating
 ) -> tuple[CurveOutcome, ...]:
-    """Outcomes of the sensor for every mixing curve of its mix, the softest first; empty without several curves.
+    """Outcomes of the sensor for every mixing curve of its mix, the softest first.
 
-    ``prediction`` and ``rated`` belong to the curve in use. For the others the same model predicts, without the search
-    for waves, which changes no figure. Contact off the axis is not computed because of its cost.
+    ``prediction`` and ``rated`` are those by the curve in use. For the other curves the same model predicts, without
+    the search for waves, which changes no figure. Empty without several curves, and for (costly) contact off the axis.
     """
     if sensor.protocol.off_axis is not None:
         return ()
@@ -46,7 +46,7 @@ def _outcome(
 
 
 def _predicted(sensor: Sensor, pressures: list[float], like: SensorPrediction) -> SensorPrediction | None:
-    """Prediction at as many of the pressures as can be solved, from the lowest; None if none can."""
+    """Prediction by the model of ``like`` at the pressures (MPa) up to the highest that can be solved; None if none."""
     for count in range(len(pressures), 0, -1):
         try:
             return predict("", sensor, pressures[:count], model=like.model, closure=like.closure or "variational")

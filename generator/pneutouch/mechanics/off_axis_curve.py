@@ -1,4 +1,4 @@
-"""Records, in a prediction, of contact without axial symmetry and of an object that moves sideways after pressing."""
+"""Records in a prediction for contact without axial symmetry and for an object that moves sideways after pressing."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pneutouch.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class ShearCurve:
-    """A shear at constant height (arrays of one length, mm, N, N mm, MPa; see `harmonic.friction_path.ShearPath`);
-    ``travel`` and ``sideways`` are positive towards the offset."""
+    """Sideways motion of the object at constant height: `harmonic.friction_path.ShearPath` with its states as arrays of
+    one length (mm, N, N mm, MPa); ``travel`` and ``sideways`` are positive towards the offset."""
 
     travel: Array
     force: Array
@@ -24,7 +24,7 @@ class ShearCurve:
     ended: str | None
 
     def scaled(self, force: float, rise: float) -> ShearCurve:
-        """The curve with all forces and the pressure rise times factors."""
+        """The curve with forces, moment and stiffness times ``force``, and pressure rise times ``rise``."""
         return replace(
             self,
             force=force * self.force,
@@ -38,7 +38,7 @@ class ShearCurve:
 
 @dataclass(frozen=True, slots=True)
 class RangeCurve:
-    """A loading curve from first contact to the end of its range at equal steps (arrays of one length, mm, N, MPa), by
+    """A loading curve at equal steps from first contact to the end of its range (arrays of one length, mm, N, MPa), on
     Hermite cubics through the solved states and their slopes."""
 
     indentation: Array
@@ -48,9 +48,9 @@ class RangeCurve:
 
 @dataclass(frozen=True, slots=True)
 class OffAxisCurve:
-    """Additions to a loading curve for contact off the axis: sideways force and moment (N, N mm; see
-    `harmonic.press.OffAxisState`), the order of the harmonics, and the share by which the last increase of the order
-    changed the figures. ``to_end`` is the curve between its points, up to the end of its range."""
+    """Additions to a loading curve for contact off the axis: sideways force and moment at its points (N, N mm; see
+    `harmonic.press.OffAxisState`), ``order`` of the harmonics, relative change ``last_change`` of the figures when it
+    was last raised. ``to_end`` is the curve to the end of its range; ``shear`` is None without sideways motion."""
 
     order: int
     last_change: float
@@ -60,7 +60,7 @@ class OffAxisCurve:
     shear: ShearCurve | None = None
 
     def scaled(self, force: float, rise: float) -> OffAxisCurve:
-        """The curve with all forces and the pressure rise times factors."""
+        """The curve with forces and moments times ``force``, and pressure rises times ``rise``."""
         sheared = None if self.shear is None else self.shear.scaled(force, rise)
         to_end = replace(self.to_end, force=force * self.to_end.force, rise=rise * self.to_end.rise)
         sideways, moment = force * self.sideways, force * self.moment

@@ -1,4 +1,4 @@
-"""The paper's sensor, which has measurements, in any resin, and the wall that a material file describes.
+"""The paper's sensor in any resin, and the conversion between Shore A hardness and Young's modulus.
 
 Shore A hardness to modulus: A. N. Gent, Rubber Chem. Technol. 31, 896-906 (1958), in its usual metric form, E = 0.0981
 (56 + 7.62336 S) / (0.137505 (254 - 2.54 S)) MPa. Only slopes and ratios of this relation are used: its level is not
@@ -25,7 +25,7 @@ _SAME = 1e-6
 
 
 def is_paper_sensor(sensor: Sensor) -> bool:
-    """True if dome, gas, plate and depth are the paper's, in any resin and clamp, so that its Table S1 applies."""
+    """True if dome, gas, plate, central contact and depth are the paper's, so that its Table S1 applies; any resin."""
     dome, gas, protocol = sensor.dome, sensor.gas, sensor.protocol
     pairs = [
         (dome.inner_radius, PAPER_RADIUS),
@@ -41,9 +41,9 @@ def is_paper_sensor(sensor: Sensor) -> bool:
 
 
 def material_sensor(material: Material) -> Sensor:
-    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0.
+    """The paper's sensor made of ``material``: no dead volume, 14 steps to three quarters of R0.
 
-    Raises InputError for a Poisson ratio or a law that makes no solid.
+    Raises InputError if Poisson ratio or law describe no stable solid.
     """
     assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
     elongation = material.elongation_at_break_percent
@@ -67,7 +67,7 @@ def material_sensor(material: Material) -> Sensor:
 
 
 def _law(material: Material) -> tuple[str, tuple[float, ...]] | None:
-    """The law of a material; None for a neo-Hookean law with its shear modulus, which the atlas covers."""
+    """Name and constants of a material's law; None without one, or if it is neo-Hookean with the stated modulus."""
     law, modulus = material.law, material.shear_modulus_MPa
     if law is None or modulus is None or (law.name == "neo-hookean" and law.constants == [modulus.nominal]):
         return None
@@ -97,10 +97,10 @@ def shore_a(modulus: float) -> float:
 
 
 def logarithmic_slope(shore: float) -> float:
-    """Logarithmic slope d ln E / dS, per unit of Shore A."""
+    """Slope d(ln E)/dS per unit of Shore A, at the hardness ``shore``."""
     return _RISE / (_OFFSET + _RISE * shore) + 1.0 / (_FULL - shore)
 
 
 def logarithmic_change(before: float, after: float) -> float:
-    """Logarithm of the ratio of the moduli at two hardnesses."""
+    """Logarithm ln(E_after/E_before) for a change of the Shore A hardness from ``before`` to ``after``."""
     return float(np.log(young_modulus(after) / young_modulus(before)))

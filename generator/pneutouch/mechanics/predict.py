@@ -1,4 +1,4 @@
-"""Predict a sensor with one of the models."""
+"""Prediction of a sensor by one of the models, and the assumptions that every prediction states."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def predict(
     tolerance: float = DEFAULT_TOLERANCE,
     answers: Mapping[str, Answered] = MappingProxyType({}),
 ) -> SensorPrediction:
-    """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
+    """Predict a sensor at ascending driving pressures (MPa); ``design`` is its name, ``closure`` the membrane model's.
 
-    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
-    ``answers`` holds results already computed in a batch of many sensors, by the model's name. Raises
-    InputError for an unknown model or closure and for a sensor that the model does not cover, BeyondLimitError beyond
-    the limit point, ComputationError if no equilibrium is found.
+    ``model`` is a name of `MODEL_CHOICES` or ``usual``. ``auto`` takes the cheapest model whose stated error meets the
+    ``tolerance`` (a fraction) and gives the reason. ``answers`` holds answers already computed in a batch of sensors,
+    by the model's name. Raises InputError for an unknown model or closure and for a sensor that the model does not
+    cover, BeyondLimitError beyond the limit point, ComputationError if no equilibrium is found.
     """
     if closure not in CLOSURES:
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
@@ -88,7 +88,7 @@ def predict(
 
 
 def contact_words(protocol: IndentationProtocol) -> str:
-    """Object that presses the sensor, in words."""
+    """Object that presses the sensor, its friction, place and motion, in words."""
     if protocol.body is None and not protocol.friction and not protocol.off_axis:
         return _PLATE
     body = "flat plate" if protocol.body is None else protocol.body.label
@@ -107,7 +107,7 @@ _Ask = Callable[[SensorModel], ModelAnswer]
 
 
 def _named(name: str, sensor: Sensor, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
-    """Model of a given name, its answer, and its limitation in words, or None. Raises InputError without an answer."""
+    """Model ``name``, its answer, and the answer's limitation in words or None; InputError if not covered or fatal."""
     model = model_named(name)
     why = model.covers(sensor)
     answer = None if why is not None else ask(model)
@@ -118,7 +118,7 @@ def _named(name: str, sensor: Sensor, ask: _Ask) -> tuple[SensorModel, ModelAnsw
 
 
 def _cheapest(sensor: Sensor, tolerance: float, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
-    """The cheapest model that meets a tolerance, its answer, and the reason for the choice."""
+    """The cheapest model that meets a tolerance (a fraction), its answer, and the reason for the choice in words."""
     sequence = models_for(sensor, tolerance)
     passed = list(sequence.passed)
     for name in sequence.models:

@@ -1,6 +1,6 @@
-"""A prediction: the results of one model for a sensor.
+"""Records of a prediction: the results of one model for a sensor, and their parts.
 
-Also the outcome for a sensor in a mix by one of the mixing curves of its resins.
+Also the results for a sensor in a mix of resins by one of the pair's mixing curves.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class WallPath:
 
 
 LAW_RANGE = "law range"
-"""Name of the limit and event beyond which the wall is stretched further than the data its law was fitted to."""
+"""Name of the limit and of the event beyond which the wall is stretched further than the data of its law's fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,15 +62,15 @@ class LimitPoint:
 
     @property
     def membrane_stretch(self) -> float:
-        """In-plane stretch."""
+        """In-plane stretch of an incompressible wall with this thickness stretch."""
         return float(self.thickness_stretch**-0.5)
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Driving pressures (MPa) at which each limit is met; None if it is not met before the limit point.
+    """Driving pressures (MPa) at which each limit is met; None if a limit is not met before the limit point.
 
-    ``law_range``: pressure at which the wall leaves the stretches that its law was fitted over, if the law states them.
+    ``law_range``: the wall leaves the stretches over which its law was fitted; None also if these are not known.
     """
 
     limit_point: float | None
@@ -80,7 +80,7 @@ class Limits:
 
     @property
     def binding(self) -> str:
-        """Name of the limit met first."""
+        """Name of the limit that is met at the lowest driving pressure."""
         return min(self.named(), key=lambda item: item[1])[0]
 
     @property
@@ -89,7 +89,7 @@ class Limits:
         return min(value for _, value in self.named())
 
     def named(self) -> list[tuple[str, float]]:
-        """The limits that are met, with their names."""
+        """Names and driving pressures (MPa) of the limits that are met."""
         pairs = [
             ("limit point", self.limit_point),
             ("break strain", self.break_strain),
@@ -101,10 +101,10 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class SensorState:
-    """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
+    """The inflated dome at one driving pressure, and its loading curve: arrays of one length (mm, N, MPa).
 
-    ``figures`` hold from first contact to ``range_end`` (mm of indentation). ``face`` returns the pressed outer wall
-    for drawing.
+    ``figures`` hold from first contact to ``range_end`` (mm of indentation); None if they are undetermined. ``face``
+    returns the pressed outer wall for drawing. A field is None or empty if the model does not give it.
     """
 
     driving_pressure: float
@@ -135,7 +135,7 @@ class SensorState:
         return tuple(event for event in self.events if event.kind in (SWAY, LOBES))
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
-        """The state with factors on force and pressure rise; events and the end of the range are unchanged."""
+        """The state with force and rise times the correction's factors; events and range end are unchanged."""
         by_force, by_rise = correction.at(self.driving_pressure)
         if by_force == by_rise == 1.0:
             return self
@@ -155,7 +155,7 @@ class SensorState:
 
 @dataclass(frozen=True, slots=True)
 class InflationCurve:
-    """Free inflation through and beyond the limit point; arrays of one length in order of volume (mm, mm3, MPa)."""
+    """Free inflation, through and beyond the limit point; arrays of one length, ordered by volume (mm, mm3, MPa)."""
 
     apex_inner: Array
     apex_outer: Array
@@ -175,7 +175,7 @@ class ModelResult:
 
 @dataclass(frozen=True, slots=True)
 class SensorPrediction:
-    """All results of one model for one sensor."""
+    """All results of one model for one sensor; ``dead_volume`` in mm3, ``closure`` None but for the membrane model."""
 
     design: str
     model: str
@@ -196,8 +196,8 @@ class SensorPrediction:
 class CurveOutcome:
     """A sensor predicted with one mixing curve.
 
-    states: at as many of the design's driving pressures as it can be inflated to, from the lowest. rated: rated
-    pressure, MPa; None if nothing could be solved.
+    states: at those of the design's driving pressures, from the lowest, at which the sensor has an equilibrium. rated:
+    rated pressure, MPa; None if there is no state.
     """
 
     by_curve: MixByCurve

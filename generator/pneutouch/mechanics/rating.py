@@ -1,4 +1,4 @@
-"""The rated pressure: how far a sensor may be driven, with the uncertainty of its limits included."""
+"""The rated pressure: the greatest driving pressure of a sensor, with the uncertainty of its limits included."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -19,13 +19,13 @@ from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
 
 RATED_SHARE = 0.9
-"""Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
+"""Rated pressure over the lower end of the lowest limit: the dome grows fast near the limit point."""
 
 LIMIT_ERROR = LIMIT_DISCRETISATION
-"""Greatest relative numerical error of the limit pressure by solid and atlas."""
+"""Greatest relative numerical error of the limit pressure in the models solid and atlas."""
 
 _WORTH = 1.05
-"""Least factor on the rated pressure for which a measurement of the modulus is advised: our choice."""
+"""Least gain in rated pressure, as a factor, for which a measurement of the modulus is advised: a choice."""
 
 
 class UncertainLimit(NamedTuple):
@@ -45,7 +45,7 @@ class Rating:
         pressure: The rated pressure, MPa.
         limits: The limits that are met, ordered by the lower ends of their intervals.
         measured: Rated pressure if the modulus is measured on coupons and confirmed, MPa.
-        is_fitted: True if a calibration of a built sensor would cover it.
+        is_fitted: True if the sensor, once built, can be calibrated with measured runs.
     """
 
     pressure: float
@@ -55,28 +55,28 @@ class Rating:
 
     @property
     def limit(self) -> UncertainLimit:
-        """Limit from which the rated pressure is derived."""
+        """Limit from which the rated pressure is derived: the one with the lowest lower end."""
         return self.limits[0]
 
     @property
     def nominal(self) -> UncertainLimit:
-        """Limit with the lowest nominal value; a driving pressure above it is an error."""
+        """Limit with the lowest nominal value; a driving pressure above this value is an error."""
         return min(self.limits, key=lambda limit: limit.nominal)
 
     @property
     def pressure_kPa(self) -> float:
-        """Rated pressure as it is displayed: rounded down to a tenth, kPa."""
+        """Rated pressure as it is displayed, kPa: rounded down to a tenth."""
         return tenths_below(self.pressure / KPA)
 
     def severity(self, pressure: float) -> Literal["error", "warning"] | None:
-        """Severity of a driving pressure (MPa): an error above the nominal limit, a warning above the rated pressure,
-        else None."""
+        """Severity of a driving pressure (MPa): an error above the lowest nominal limit, a warning above the rated
+        pressure, else None."""
         if pressure > self.nominal.nominal:
             return "error"
         return "warning" if pressure > self.pressure else None
 
     def excess(self, pressure: float) -> str:
-        """Comparison in words of a driving pressure (MPa) that exceeds the rating."""
+        """Text for a driving pressure (MPa) above the rated pressure: the limit or rating that it exceeds."""
         if self.severity(pressure) == "error":
             least = self.nominal
             return f"{pressure / KPA:g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
@@ -95,7 +95,7 @@ class Rating:
 
     @property
     def summary(self) -> str:
-        """Basis of the rated pressure, briefly."""
+        """Basis of the rated pressure, in fewer words than `basis`."""
         limit = self.limit
         if limit.low == limit.nominal:
             return f"{RATED_SHARE:.0%} of the {limit.name}, {limit.nominal / KPA:.1f} kPa"
@@ -104,7 +104,7 @@ class Rating:
 
     @property
     def remedy(self) -> str | None:
-        """Advice that would raise the rated pressure, in words; None if a measured modulus would not raise it."""
+        """Advice that would raise the rated pressure; None if a measured modulus raises it by less than 5 %."""
         if self.measured < _WORTH * self.pressure:
             return None
         measured_kPa = tenths_below(self.measured / KPA)
@@ -114,7 +114,7 @@ class Rating:
         )
 
     def remedy_for(self, pressure: float) -> str | None:
-        """The remedy if it permits a pressure (MPa); None if only a lower pressure helps."""
+        """`remedy` if it would permit a driving pressure (MPa); None if only a lower pressure helps."""
         return self.remedy if self.measured >= pressure else None
 
 
@@ -122,7 +122,7 @@ def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:
     """Rated pressures of n sensors, MPa: `RATED_SHARE` of the lower end of the lowest limit.
 
     Args:
-        limit: The limit point, or the break strain if that is met earlier, MPa (n,).
+        limit: Pressure of the limit point, or of the break strain if that is lower, MPa (n,).
         spread: Relative standard uncertainty of the limit (n,), see `limit_spread`.
         gauge: Range of the pressure gauge, MPa; taken as exact, because the driving pressure is set by its reading.
     """
@@ -137,11 +137,11 @@ def rating(
     calibration: SensorCalibration | None = None,
     numerical: float = LIMIT_ERROR,
 ) -> Rating:
-    """Rating of a sensor in a resin from a printer, from the limits that a model gives.
+    """Rating of a sensor of ``material`` from ``printer``, from the nominal ``limits`` that a model gives.
 
-    Limit point and break strain are met at pressures proportional to the modulus, so both have the uncertainty of the
+    All limits but the gauge range are met at pressures proportional to the modulus, so all have the uncertainty of the
     limit pressure. The scatter of the break strain is covered by using the least elongation at break instead.
-    ``calibration`` is that of the sensor in hand, if there is one. ``numerical`` is the model's greatest relative error
+    ``calibration`` is that of the built sensor, None without one. ``numerical`` is the model's greatest relative error
     of the limit pressure.
     """
     spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical, calibration)

@@ -1,4 +1,4 @@
-"""Figures from a curve, by the same few functions for predicted and measured curves.
+"""Figures from loading curves; predicted and measured curves are treated by the same functions.
 
 A curve is three arrays of one length: indentation (mm), contact force (N), pressure rise (kPa). Definitions follow the
 paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else the usual ones of sensor
@@ -15,16 +15,16 @@ from pneutouch.arrays import Array
 
 _LEAST_POINTS = 3
 _SATURATED = 0.5
-"""Share of the fitted slope below which the local slope counts as saturated."""
+"""Share of the fitted slope below which the local slope counts as saturation."""
 
 
 Of = TypeVar("Of", bound=Any)
-"""One number, or an array with one for each curve."""
+"""One number for one curve, or an array with a number for each curve."""
 
 
 class Figures(NamedTuple, Generic[Of]):
-    """Key figures of one loading curve, or of many as arrays of one shape. Sensitivities in kPa/N, stiffness in N/mm,
-    forces in N, r_squared and nonlinearity as fractions; saturation_force is infinite without saturation."""
+    """Key figures of one loading curve, or of many as arrays of one shape; definitions in `figures`. Sensitivities in
+    kPa/N, stiffness N/mm, forces N, r_squared and nonlinearity fractions; saturation_force inf without saturation."""
 
     sensitivity: Of
     intercept_kPa: Of
@@ -48,7 +48,7 @@ class Figures(NamedTuple, Generic[Of]):
         return force
 
     def scaled(self, force: float, rise: float) -> Figures[Of]:
-        """Figures of the same curve with forces and pressure rises multiplied by two factors."""
+        """Figures of the same curve with its forces times ``force`` and its pressure rises times ``rise``."""
         return self._replace(
             sensitivity=self.sensitivity * rise / force,
             intercept_kPa=self.intercept_kPa * rise,
@@ -61,7 +61,7 @@ class Figures(NamedTuple, Generic[Of]):
 
 
 def lines(indentation: Array, force: Array, rise_kPa: Array) -> Figures[Array]:
-    """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
+    """Key figures (...) of curves (..., n) along the last axis: mm, N, kPa; definitions in `figures`.
 
     For a curve with constant force the undetermined figures are NaN.
     """
@@ -85,7 +85,7 @@ def lines(indentation: Array, force: Array, rise_kPa: Array) -> Figures[Array]:
 
 
 def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures[float] | None:
-    """Key figures over all the points given, or None if they do not determine a straight line.
+    """Key figures over all points of a curve, arrays (n,) in mm, N and kPa; None if they determine no straight line.
 
     ``sensitivity`` is the slope of the least-squares line of pressure rise over force with intercept;
     ``nonlinearity`` the greatest distance from that line over the full-scale rise; ``stiffness`` the mean
@@ -97,10 +97,10 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures[float]
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
-    """Force at which the local slope of pressure over force falls below half of the fitted slope; infinite if it does
-    not, NaN without a fitted slope.
+    """Force (N) at which the local slope of pressure over force falls below half of the fitted ``slope`` (kPa/N):
+    infinite if it does not, NaN if ``slope`` is NaN.
 
-    The local slope must have been above that before: a curve that begins flat is not saturated. Curves along the last
+    The local slope must have been above half before: a curve that begins flat is not saturated. Curves along the last
     axis; the local slope is the second-order difference, one-sided at the ends.
     """
     step, climb = np.diff(force), np.diff(rise_kPa)
@@ -117,7 +117,7 @@ def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Arr
 
 
 def tangent_stiffness(indentation: Array, force: Array) -> Array:
-    """dF/d(delta) at every point, N/mm, by second-order differences."""
+    """Slope dF/d(delta) of force (N) over indentation (mm) at every point (n,), N/mm, by second-order differences."""
     slope: Array = np.gradient(force, indentation, edge_order=2 if len(force) > 2 else 1)
     return slope
 
@@ -125,8 +125,8 @@ def tangent_stiffness(indentation: Array, force: Array) -> Array:
 def hysteresis(force_up: Array, rise_up: Array, force_down: Array, rise_down: Array) -> tuple[float, float]:
     """Hysteresis between a loading and an unloading branch by its two usual definitions, as fractions.
 
-    First the greatest difference in pressure at equal force over the full-scale rise; then the area of the loop over
-    the area under the loading branch. The paper states hysteresis figures without a formula.
+    First the greatest difference of the pressure rises at equal force over the range of the loading branch's rise; then
+    the area of the loop over the area under the loading branch. The paper gives hysteresis without a formula.
     """
     up, down = np.argsort(force_up), np.argsort(force_down)
     low = max(force_up.min(), force_down.min())

@@ -1,7 +1,7 @@
 """The gas of an inflated, untouched sensor: its amount, and the effects of a leak and of temperature.
 
-Ideal gas at one temperature behind a compliant wall: the cavity volume follows the pressure along the free inflation of
-the dome. Lengths mm, pressures MPa.
+The gas is ideal and at one temperature, and the cavity yields: its volume follows the pressure along the free inflation
+of the dome. Lengths mm, pressures MPa.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pneutouch.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class SealedGas:
-    """The gas at n driving pressures.
+    """The gas of one sensor at n driving pressures.
 
     Attributes:
         pressure: Driving pressure, gauge, MPa (n,), rising.
@@ -33,23 +33,23 @@ class SealedGas:
 
     @property
     def capacity(self) -> Array:
-        """Increase d(p V)/dp of the gas amount with pressure, p absolute and V the whole gas volume, mm3 (n,).
+        """Increase d(p V)/dp of the gas amount with pressure, mm3 (n,); p absolute, V cavity and dead volume together.
 
-        V + V_d + p dV/dp with the cavity volume V; a rigid cavity has V + V_d. dV/dp is the second-order difference.
+        It is V + p dV/dp, and V for a rigid cavity. dV/dp is the second-order difference.
         """
         give = np.gradient(self.volume, self.pressure, edge_order=2 if self.pressure.size > 2 else 1)
         return np.asarray(self.volume + self.dead_volume + (self.pressure + self.ambient) * give)
 
     @property
     def injected(self) -> Array:
-        """Gas to inject from the vented state, as volume at ambient pressure, mm3 (n,). Isothermal (Boyle)."""
+        """Gas to inject into the vented sensor, as a volume at ambient pressure, mm3 (n,). Isothermal (Boyle)."""
         absolute = self.pressure + self.ambient
         return absolute * (self.volume + self.dead_volume) / self.ambient - self.rest_volume - self.dead_volume
 
     def by_temperature(self, temperature: float) -> Array:
-        """Derivative of the pressure of the sealed gas by temperature at ``temperature`` (K), MPa/K (n,).
+        """Derivative of the sealed gas's pressure by temperature at ``temperature`` (K), MPa/K (n,).
 
-        n R = p V/T and d(p V) = capacity dp: dp/dT = p V/(T capacity), which is p/T in a rigid cavity.
+        From p V/T constant and d(p V) = `capacity` dp: dp/dT = p V/(T capacity), which is p/T in a rigid cavity.
         """
         held = (self.pressure + self.ambient) * (self.volume + self.dead_volume)
         return np.asarray(held / temperature / self.capacity)
@@ -57,15 +57,15 @@ class SealedGas:
     def loss(self, conductance: float) -> Array:
         """Rate at which a leak lowers the pressure, MPa/s (n,).
 
-        ``conductance`` in mm3/s: gas is lost at conductance times gauge pressure (laminar flow through a fine gap).
+        ``conductance`` in mm3/s: p V falls at conductance times gauge pressure (laminar flow through a fine gap).
         """
         return np.asarray(conductance * self.pressure / self.capacity)
 
     def holding_time(self, conductance: float, start: float, end: float) -> float:
-        """Time in s in which a leak lowers the pressure from ``start`` to ``end``, MPa; infinite without a leak.
+        """Time (s) in which a leak lowers the pressure from ``start`` to ``end`` (MPa); infinite without a leak or for
+        an ``end`` of 0 or less.
 
-        The integral of capacity/(conductance p) over the pressure, with the capacity linear between the states.
-        """
+        The integral of capacity/(conductance p) over the pressure, with the capacity linear between the states."""
         if conductance <= 0.0 or end <= 0.0:
             return float("inf")
         grid = np.geomspace(end, start, _PANELS + 1)
@@ -78,6 +78,6 @@ _PANELS = 256
 
 
 def conductance_of_cap(rate: float, pressure: float, volume: float) -> float:
-    """Conductance of a leak, mm3/s, from the rate of pressure fall (MPa/s) at a mean gauge pressure (MPa) in a rigid
-    volume (mm3)."""
+    """Conductance (mm3/s) of a leak from a rigid ``volume`` (mm3) in which the pressure falls at ``rate`` (MPa/s) at a
+    mean gauge ``pressure`` (MPa)."""
     return rate * volume / pressure

@@ -1,4 +1,4 @@
-"""A sensor as input of the mechanics: records in mm, N and MPa, without files or printers."""
+"""Records of a sensor, the input of the mechanics, in mm, N and MPa; they know no files and no printers."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ _PLANE = RigidBase()
 
 @dataclass(frozen=True, slots=True)
 class Dome:
-    """The unloaded membrane. ``flange`` is the width and thickness of the flange if the solid is clamped as printed;
-    without it the wall is clamped at the base plane, as in the paper. ``base`` is the body that the wall can lie down
-    on next to its clamp and inside; without it the wall passes through the base plane."""
+    """The unloaded membrane. ``flange`` is the width and thickness of a flange that is clamped as printed; None: the
+    wall is clamped at the base plane, as in the paper. ``base`` is the body on which the wall can lie down next to its
+    clamp and inside; None: the wall passes through the base plane."""
 
     shape: DomeShape
     flange: tuple[float, float] | None = None
@@ -51,24 +51,23 @@ class Dome:
 
     @property
     def inner_radius(self) -> float:
-        """Radius of the inner face at the base plane."""
+        """Radius of the inner face at the base plane, mm."""
         return self.shape.inner_radius
 
     @property
     def wall_thickness(self) -> float:
-        """Thickness of the wall."""
+        """Thickness of the wall, mm."""
         return self.shape.wall_thickness
 
 
 @dataclass(frozen=True, slots=True)
 class WallMaterial:
-    """The elastic wall. ``break_stretch`` is the stretch at which the resin may break.
+    """The elastic wall. ``break_stretch`` is the stretch at which the resin may break; None if unknown.
 
-    ``law`` is the name of a hyperelastic law with its constants; without it the wall is neo-Hookean with
-    ``shear_modulus``. With a law, ``shear_modulus`` is the modulus of the neo-Hookean wall that replaces it in the
-    atlas. ``largest_stretch`` is the stretch in uniaxial tension up to which the law was fitted, if known. ``grade``
-    has arc positions from the pole (0) to the rim (1) and the moduli there over ``shear_modulus``, linear in between;
-    without it the wall is homogeneous.
+    ``law`` is the name of a hyperelastic law and its constants; None: the wall is neo-Hookean with ``shear_modulus``.
+    With a law, ``shear_modulus`` is the modulus of the neo-Hookean wall that stands for it in the atlas.
+    ``largest_stretch`` is the uniaxial stretch up to which the law was fitted; None if unknown. ``grade`` has arc
+    positions, 0 pole to 1 rim, and moduli there over ``shear_modulus``, linear in between; None: homogeneous.
     """
 
     shear_modulus: float
@@ -93,7 +92,7 @@ class WallMaterial:
 
 @dataclass(frozen=True, slots=True)
 class GasCircuit:
-    """The gas behind the membrane: absolute ``ambient_pressure``, ``dead_volume`` and the range of the gauge."""
+    """The gas behind the membrane: absolute ``ambient_pressure``, ``dead_volume``, upper end of the gauge's range."""
 
     ambient_pressure: float
     dead_volume: float
@@ -102,12 +101,12 @@ class GasCircuit:
 
 @dataclass(frozen=True, slots=True)
 class IndentationProtocol:
-    """The test: a plate or an object moved to ``depth`` after first contact in ``steps`` equal steps.
+    """The test: a plate or an object moved from first contact to the indentation ``depth`` in ``steps`` equal steps.
 
     The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` replaces
-    the flat plate; ``plate_rim`` is the radius of the plate's rim, if stated; ``friction`` is Coulomb's coefficient,
-    inf for a surface that grips. The axis of the object is ``offset`` from the dome's, and a plate leans by ``tilt``
-    (rad), upwards on the side of the offset. After the press the object moves sideways by ``shear``, towards that side.
+    the flat plate; ``plate_rim`` is the radius of its rim, None if not stated; ``friction`` is Coulomb's coefficient,
+    inf for a surface that grips. The object's axis is at the distance ``offset`` from the dome's; a plate leans by
+    ``tilt`` (rad), upwards on the side of the offset; after the press the object moves by ``shear`` to that side.
     """
 
     plate_radius: float
@@ -123,7 +122,7 @@ class IndentationProtocol:
 
     @property
     def off_axis(self) -> str | None:
-        """Deviation of the contact from the centre, in words; None for central contact."""
+        """Reason in words why the contact is not axisymmetric (offset, lying body, tilt or shear); None if it is."""
         if self.offset:
             return f"the object stands {self.offset:g} mm off the axis"
         if self.body is not None and self.body.lying:
@@ -134,7 +133,7 @@ class IndentationProtocol:
 
     @property
     def other_contact(self) -> str | None:
-        """Contact other than the frictionless plate of membrane and atlas, in words; None for this plate."""
+        """Difference in words from a central, frictionless plate, the only contact of membrane and atlas; or None."""
         if self.off_axis is not None:
             return self.off_axis
         if self.body is not None:
@@ -166,14 +165,14 @@ class ResponseCorrection:
         return force, rise
 
     def sensitivity_factor(self, driving_pressure: float) -> float:
-        """Factor of both corrections together on the slope of pressure over force at a driving pressure, MPa."""
+        """Factor on the sensitivity, rise factor over force factor, at a driving pressure (MPa)."""
         force, rise = self.at(driving_pressure)
         return rise / force
 
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A dome of a material with its gas, and the indentation test."""
+    """A dome with the material of its wall, its gas, the indentation test and the correction by a calibration."""
 
     dome: Dome
     wall: WallMaterial
@@ -202,7 +201,7 @@ class Sensor:
         return even.replace(law=None) if self.wall.fitted else even
 
     def of_modulus(self, shear_modulus: float) -> Sensor:
-        """The sensor of another shear modulus, MPa; a law gives stresses in the same proportion."""
+        """The sensor with another shear modulus (MPa); the stresses of a law change in the same proportion."""
         law = self.wall.law
         if law is not None:
             law = stiffened(*law, shear_modulus / self.wall.shear_modulus)

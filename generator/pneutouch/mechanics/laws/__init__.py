@@ -15,11 +15,11 @@ LAWS: dict[str, Callable[..., Hyperelastic]] = {
     "yeoh": yeoh,
     "ogden": lambda *flat, poisson_ratio: ogden(tuple(zip(flat[::2], flat[1::2], strict=True)), poisson_ratio),
 }
-"""Laws by name; called with constants (MPa; Ogden: mu, alpha, mu, alpha ...) and ``poisson_ratio``."""
+"""Functions by the law's name; called with constants (MPa; Ogden: mu, alpha, mu, alpha ...) and ``poisson_ratio``."""
 
 
 def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) -> Hyperelastic:
-    """Build a law by name. Raises InputError for an unknown name or unsuitable constants."""
+    """Law of a name of `LAWS` with its constants. Raises InputError for an unknown name or unsuitable constants."""
     if name not in LAWS:
         raise InputError(f"unknown.{nearest(name, LAWS)}", key="law", value=name)
     try:
@@ -29,7 +29,7 @@ def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) 
 
 
 def stiffened(name: str, constants: tuple[float, ...], factor: float) -> tuple[str, tuple[float, ...]]:
-    """A law and its constants with all stresses times ``factor``: every constant but Ogden's exponents."""
+    """Name and constants of a law with all stresses times ``factor``: it multiplies all but Ogden's exponents."""
     exponents = slice(1, None, 2) if name == "ogden" else slice(0)
     scaled = [factor * constant for constant in constants]
     scaled[exponents] = constants[exponents]

@@ -1,6 +1,6 @@
-"""A hyperelastic material: an isochoric energy, from which the modulus is computed, and Poisson's ratio.
+"""A hyperelastic material: an isochoric energy, from which its shear modulus is computed, and Poisson's ratio.
 
-Also the first invariant of uniaxial tension and its inverse, by which other states are compared with tension.
+Also the first invariant of uniaxial tension and its inverse, which compare other states of strain with tension.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,8 @@ Energy = Callable[[Strain], Jet]
 class Hyperelastic:
     """An isochoric energy (MPa) and Poisson's ratio of the small-strain solid.
 
-    `convention` states the form of the energy that the parameters belong to; `mu` is computed from the energy itself,
-    so a wrong convention shows as a wrong modulus.
+    `convention` is the form of the energy in words; `mu`, the shear modulus (MPa), is computed from the energy itself,
+    so constants of another convention show as a wrong modulus. Raises InputError unless 0 < nu < 0.5 and `mu` > 0.
     """
 
     energy: Energy
@@ -43,19 +43,19 @@ class Hyperelastic:
 
     @property
     def bulk_ratio(self) -> float:
-        """K/mu of the small-strain solid."""
+        """Bulk modulus over shear modulus of the small-strain solid, K/mu."""
         nu = self.poisson_ratio
         return 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
 
 
 def first_invariant(stretch: Array | float) -> Array:
-    """I1 = l^2 + 2/l of uniaxial tension of an incompressible solid."""
+    """First invariant I1 = l^2 + 2/l of an incompressible solid in uniaxial tension at the stretch l."""
     lengths = np.asarray(stretch, float)
     return np.asarray(lengths**2 + 2.0 / lengths)
 
 
 def same_invariant(first: Array | float) -> Array:
-    """Stretch of uniaxial tension, at least 1, with a given first invariant (at least 3): l^3 - I1 l + 2 = 0.
+    """Stretch l >= 1 of uniaxial tension with the first invariant ``first``: l^3 - I1 l + 2 = 0; 1 for I1 below 3.
 
     It compares other states, such as the biaxial state of an inflated dome, with a tensile test: the laws in use depend
     only, or nearly only, on the first invariant.

@@ -12,5 +12,5 @@ def energy(s: Strain, c10: float, c01: float) -> Jet:
 
 
 def mooney_rivlin(c10: float, c01: float, poisson_ratio: float = 0.49) -> Hyperelastic:
-    """The law with constants in MPa."""
+    """The law with the constants ``c10`` and ``c01`` in MPa."""
     return Hyperelastic(partial(energy, c10=c10, c01=c01), poisson_ratio, "c10(I1-3)+c01(I2-3)")

@@ -19,7 +19,7 @@ def energy(s: Strain, terms: Terms) -> Jet:
 
 
 def ogden(terms: Terms, poisson_ratio: float = 0.49) -> Hyperelastic:
-    """The law with (mu_i, alpha_i) pairs, mu_i in MPa."""
+    """The law with 1 to 3 pairs (mu_i, alpha_i), mu_i in MPa. Raises InputError for other numbers or alpha_i = 0."""
     if not 1 <= len(terms) <= 3 or any(alpha == 0.0 for _, alpha in terms):
         raise InputError("law ogden: give one to three (mu, alpha) pairs with alpha other than 0")
     return Hyperelastic(partial(energy, terms=terms), poisson_ratio, "sum 2mu/alpha^2(sum l^alpha-3)")

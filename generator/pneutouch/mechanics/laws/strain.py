@@ -15,7 +15,7 @@ import numpy as np
 from pneutouch.arrays import Array
 
 VALUE, BY_A, BY_J, BY_H, BY_AA, BY_AJ, BY_AH, BY_JJ, BY_JH, BY_HH = range(10)
-"""Rows of a `Jet`: the value, its first and its second derivatives."""
+"""Rows of a `Jet`: the value and its first and second derivatives by a, j and h."""
 
 GRADIENT = slice(BY_A, BY_H + 1)
 
@@ -24,7 +24,7 @@ HESSIAN = ((BY_AA, BY_AJ, BY_AH), (BY_AJ, BY_JJ, BY_JH), (BY_AH, BY_JH, BY_HH))
 
 _FIRST = (BY_A, BY_J, BY_H)
 _PRODUCTS = tuple((HESSIAN[i][k], _FIRST[i], _FIRST[k]) for i in range(3) for k in range(i, 3))
-"""Each second derivative with the two first derivatives whose product it contains by the chain rule."""
+"""Row of each second derivative, and rows of the two first derivatives whose product the chain rule adds to it."""
 
 
 class Jet:
@@ -60,7 +60,7 @@ class Jet:
     __rmul__ = __mul__
 
     def chain(self, value: Array, first: Array, second: Array) -> Jet:
-        """Jet of f(self), from f, f' and f'' at the value of self; each of shape (n,)."""
+        """Jet of f(self), from ``value`` f, ``first`` f' and ``second`` f'' at the value of self, (n,) each."""
         out = first * self.data
         out[VALUE] = value
         for row, i, k in _PRODUCTS:
@@ -122,25 +122,25 @@ def _even_power(x: Array, alpha: float) -> tuple[Array, Array, Array]:
 
 
 class Strain:
-    """Isochoric invariants at points, as jets; a = |F|^2, j = det F > 0, h > 0, each of shape (n_points,)."""
+    """Isochoric invariants at points, as jets, from a = |F|^2, j = det F > 0 and h > 0, (n_points,) each."""
 
     def __init__(self, a: Array, j: Array, h: Array) -> None:
         self.a, self.j, self.h = a, j, h
 
     @cached_property
     def first(self) -> Jet:
-        """J^(-2/3) (lambda_1^2 + lambda_2^2 + lambda_3^2)."""
+        """First invariant J^(-2/3) (l1^2 + l2^2 + l3^2) of the stretches l1, l2, l3, with J = j h."""
         third = 1.0 / 3.0
         return self._monomial((1, -2 * third, -2 * third)) + self._monomial((0, -2 * third, 4 * third))
 
     @cached_property
     def second(self) -> Jet:
-        """J^(-4/3) (l1^2 l2^2 + l2^2 l3^2 + l3^2 l1^2)."""
+        """Second invariant J^(-4/3) (l1^2 l2^2 + l2^2 l3^2 + l3^2 l1^2), with J = j h."""
         third = 1.0 / 3.0
         return self._monomial((0, 2 * third, -4 * third)) + self._monomial((1, -4 * third, 2 * third))
 
     def power_sum(self, alpha: float) -> Jet:
-        """J^(-alpha/3) (l1^alpha + l2^alpha + l3^alpha), smooth where in-plane stretches coincide."""
+        """Sum J^(-alpha/3) (l1^alpha + l2^alpha + l3^alpha), smooth where the in-plane stretches coincide; J = j h."""
         n = self.a.size
         total, ratio = np.zeros((10, n)), np.zeros((10, n))
         total[VALUE], total[BY_A], total[BY_J] = self.a + 2.0 * self.j, 1.0, 2.0
