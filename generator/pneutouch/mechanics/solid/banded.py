@@ -1,7 +1,7 @@
 """Banded storage of a symmetric matrix assembled from blocks, its factorisations by LAPACK and its inertia.
 
-SciPy's wrappers of LAPACK load without the package around them: `import scipy.linalg` loads most of NumPy's subpackages
-and costs three times as much as both together, a sixth of the processor time of ``predict`` with the solid.
+SciPy's LAPACK wrappers are loaded without `scipy.linalg`, which imports most of NumPy's subpackages and would take a
+sixth of the processor time of ``predict`` with the solid.
 """
 
 import sys
@@ -20,7 +20,7 @@ from pneutouch.arrays import Array, Index
 
 
 def _wrappers() -> ModuleType:
-    """SciPy's extension module of LAPACK wrappers; through `scipy.linalg` if that is loaded, or if not found."""
+    """SciPy's module of LAPACK wrappers, by itself; from `scipy.linalg` if that is loaded or the file is not found."""
     import scipy
 
     spec = None
@@ -37,19 +37,19 @@ lapack = _wrappers()
 
 
 class BlockEntries(NamedTuple):
-    """Row and column of every entry of a family of blocks of any form, in storage order; entries above the diagonal, or
-    with -1 for a fixed dof, are left out."""
+    """Row and column in the matrix of every entry of a family of blocks, in storage order; -1 stands for a fixed degree
+    of freedom (dof). Entries above the diagonal or of a fixed dof are not assembled."""
 
     row: Index
     column: Index
 
 
 class AssemblyPattern:
-    """Places of block entries in a band matrix: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed
-    dof. A family with blocks of another form has it in ``forms``; its table is then used only for vectors.
+    """Places in a lower band matrix of entries of blocks. A family of blocks (n_blocks, d, d) has a table (n_blocks, d)
+    of dof numbers, -1 if fixed; for a family k whose blocks are not square, ``forms[k]`` gives the places instead.
 
-    Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`: as
-    fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
+    Entries of all families, in their order, form one flat vector, and those of one place are summed by `bincount`: as
+    fast as a product with a sparse 0/1 matrix, without the import of SciPy's sparse matrices.
     """
 
     def __init__(
@@ -71,55 +71,55 @@ class AssemblyPattern:
         self._unknown = _gathered(tables, self._free)
 
     def matrix(self, blocks: list[Array]) -> Array:
-        """Lower band (width + 1, size), Fortran ordered, of the sum of blocks."""
+        """Lower band (width + 1, size), Fortran ordered, of the sum of the ``blocks``, one array for each family."""
         entries = _gathered(blocks, self._entries)
         flat = np.asarray(np.bincount(self._place, entries, self.size * (self.width + 1)), dtype=np.float64)
         return flat.reshape(self.size, self.width + 1).T
 
     def added(self, band: Array, blocks: list[Array]) -> Array:
-        """Copy of a band in the form of `matrix`, with the sum of blocks added."""
+        """Copy of a lower band (width + 1, size) with the ``blocks`` added, one array for each family."""
         flat = band.T.flatten()
         flat[self._places] += np.bincount(self._number, _gathered(blocks, self._entries))
         return flat.reshape(self.size, self.width + 1).T
 
     def vector(self, blocks: list[Array]) -> Array:
-        """Sum (size,) of block vectors, each (n_blocks, d)."""
+        """Sum (size,) of block vectors, an array (n_blocks, d) for each family."""
         entries = _gathered(blocks, self._free)
         return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
 
 
 @dataclass(frozen=True)
 class FaceSums:
-    """Sums over the faces of a wall: patterns for the edges of the inner wall, of the outer wall, and of the pairs of
-    outer wall and flange top (None without a flange)."""
+    """Sums over the faces of a wall: patterns for the edges of the inner wall, for those of the outer wall, and for the
+    outer edges coupled with the flange's top (None without a flange). n is the number of nodes of an edge."""
 
     inner: AssemblyPattern
     outer: AssemblyPattern
     fold: AssemblyPattern | None = None
 
     def swell(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on the edges of the inner wall, (n_edges, 2 n)."""
+        """Sum (size,) of the vectors (n_edges, 2 n) of the inner wall's edges."""
         return self.inner.vector([blocks])
 
     def push(self, blocks: Array) -> Array:
-        """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
+        """Sum (size,) of the vectors (n_edges, 2 n) of the outer wall's edges."""
         return self.outer.vector([blocks])
 
     def folded(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on edge pairs of outer wall and flange top, (n_edges, 2 n)."""
+        """Sum (size,) of the vectors (n_edges, 2 m) of outer edges with the flange's top, together m nodes."""
         assert self.fold is not None
         return self.fold.vector([blocks])
 
 
 def _square(table: Index) -> BlockEntries:
-    """Row and column of every entry of square blocks with a dof table."""
+    """Row and column of every entry of square blocks with a dof table (n_blocks, d)."""
     shape = (*table.shape, table.shape[1])
     row, column = (np.broadcast_to(t, shape).ravel() for t in (table[:, :, None], table[:, None, :]))
     return BlockEntries(row, column)
 
 
 def _gathered(blocks: Sequence[NDArray[Any]], rows: Sequence[Index]) -> NDArray[Any]:
-    """Selected entries of the blocks of all families, one family after the other."""
+    """Entries of the blocks of all families at the flat indices ``rows``, one family after the other, in one array."""
     parts = [block.ravel().take(row) for block, row in zip(blocks, rows, strict=True)]
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
@@ -136,9 +136,9 @@ class BandedSolution:
 
 
 def solve(band: Array, b: Array) -> BandedSolution:
-    """Solve by Cholesky, or by pivoted LU if the matrix is not positive definite; b (size, n_rhs).
+    """Solve K x = b (size, n_rhs) with the lower band of K, by Cholesky, or by LU if K is not positive definite.
 
-    For a singular matrix x is not finite.
+    For a singular K x is not finite.
     """
     definite = solve_definite(band, b)
     if definite is not None:
@@ -149,7 +149,7 @@ def solve(band: Array, b: Array) -> BandedSolution:
 
 
 def solve_definite(band: Array, b: Array) -> Array | None:
-    """Solution of K x = b (size, n_rhs) by Cholesky; None if the matrix is not positive definite."""
+    """Solution of K x = b (size, n_rhs) by Cholesky, with the lower band of K; None if K is not positive definite."""
     factor, info = lapack.dpbtrf(band, lower=1)
     if info:
         return None
@@ -158,7 +158,7 @@ def solve_definite(band: Array, b: Array) -> Array | None:
 
 
 def is_definite(band: Array) -> bool:
-    """True if the matrix is positive definite, by Cholesky."""
+    """True if the matrix of a lower band is positive definite, by Cholesky."""
     return int(lapack.dpbtrf(band, lower=1)[1]) == 0
 
 
@@ -172,7 +172,7 @@ class SoftestMode:
 
 
 def softest(band: Array) -> SoftestMode:
-    """Eigenvalue nearest zero, by inverse iteration from one fixed vector; zero for a singular matrix."""
+    """Softest mode of a lower band by inverse iteration from a fixed vector; value 0 if LU finds it singular."""
     width = band.shape[0] - 1
     factor, info = lapack.dpbtrf(band, lower=1)
     definite, pivots = info == 0, None
@@ -190,7 +190,7 @@ def softest(band: Array) -> SoftestMode:
 
 
 def _general(band: Array) -> Array:
-    """Both triangles in the layout of LAPACK's gb routines, with space for fill-in."""
+    """Both triangles of a lower band in the layout of LAPACK's gb routines, (3 width + 1, size), with fill-in space."""
     width, n = band.shape[0] - 1, band.shape[1]
     full = np.zeros((3 * width + 1, n), order="F")
     full[2 * width :] = band
@@ -200,7 +200,7 @@ def _general(band: Array) -> Array:
 
 
 def negative_pivots(band: Array) -> int:
-    """Number of negative eigenvalues, by Sylvester's law on a block LDL^T with blocks as wide as the band."""
+    """Number of negative eigenvalues of a lower band, by Sylvester's law on a block LDL^T with blocks as wide as it."""
     width, n = band.shape[0] - 1, band.shape[1]
     step = max(width, 1)
     count = 0
@@ -219,7 +219,7 @@ def negative_pivots(band: Array) -> int:
 
 
 def _dense(band: Array, start: int, stop: int) -> Array:
-    """Rows and columns start..stop as a full symmetric matrix."""
+    """Rows and columns from ``start`` to before ``stop`` of a lower band, as a full symmetric matrix."""
     m = stop - start
     out = np.zeros((m, m))
     flat = out.reshape(-1)

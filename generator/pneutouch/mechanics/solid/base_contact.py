@@ -17,8 +17,8 @@ _POINTS = 3
 
 @dataclass(frozen=True)
 class BaseLoad:
-    """Load of the outer wall on its support: force along the axis (mu R0^2), greatest traction (mu, per area at rest)
-    and greatest penetration (R0); all 0 without contact."""
+    """Load of the outer wall on base or flange: force along the axis (mu R0^2), greatest traction (mu, per area at
+    rest) and greatest penetration (R0); all 0 without contact."""
 
     force: float = 0.0
     traction: float = 0.0
@@ -31,11 +31,11 @@ class BaseLoad:
 
 
 class BaseContact:
-    """Contact energy psi = (k/2) sum w <-g>^2 on both faces, g the height over the base; an `EnergyTerm`.
+    """Contact energy (k/2) sum w <-g>^2 over the points of both faces, an `EnergyTerm`: g is a point's height over the
+    base, <-g> its depth below, w its area at rest, and k the stiffness of the contact with the plate.
 
-    The stiffness is that of the contact with the plate. A wall lies down on its base point by point from the clamp
-    outward, so plain Newton steps converge, and the stiff potential needs no more iterations than a soft one. Rounding
-    of the gaps is no greater than for the plate, which the residual allows for.
+    A wall lies down on its base point by point from the clamp outward, so plain Newton steps converge, for a stiff
+    potential as fast as for a soft one. Rounding of the gaps is no greater than at the plate, which is allowed for.
     """
 
     noise = 0.0
@@ -44,7 +44,7 @@ class BaseContact:
         self.outer, self.inner, self._faces = outer, inner, faces
 
     def at(self, x: Array) -> TermState:
-        """Energy and its derivatives at positions x (n_nodes, 2), or at coefficients of harmonics."""
+        """Energy and its derivatives at positions x (n_nodes, 2), or at coefficients x of the harmonic model."""
         outer, inner = self.outer.meet(x), self.inner.meet(x)
         energy, gradient = 0.0, np.zeros(self._faces.outer.size)
         if outer is not None:
@@ -61,8 +61,8 @@ class BaseContact:
         )
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
-        """Second derivatives on the inner and the outer face at positions x: by edge positions (n_edges, 2 n, 2 n), and
-        by displacements around the axis (n_edges, n, n), which also move a point outwards; None off the base."""
+        """Second derivatives at positions x for the inner, then the outer face: by edge positions (n_edges, 2 n, 2 n)
+        and by displacements around the axis (n_edges, n, n); None for a face that does not touch the base."""
         meetings = [(face, face.meet(x)) for face in (self.inner, self.outer)]
         return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]
 
@@ -77,7 +77,7 @@ class BaseContact:
 
 @dataclass(frozen=True)
 class BaseMeeting:
-    """Radius and traction of the points of a face, and slope and curvature of the base, (n_edges, n_points) each."""
+    """Radius and vertical traction at points of a face, slope and curvature of the base there; (n_edges, n_points)."""
 
     radius: Array
     traction: Array
@@ -86,8 +86,8 @@ class BaseMeeting:
 
 
 class BaseFace:
-    """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward, with
-    a step up at the ``ring``, given as radius and height (R0)."""
+    """The quadrature points of one face of the wall, and the base that they can meet: flat from the radius ``start``
+    outward, with a ring that begins at radius ``ring[0]`` and rises to ``ring[1]``; R0."""
 
     def __init__(
         self, edges: Index, rest: Array, contact: Contact, start: float, ring: tuple[float, float] = (0.0, 0.0)
@@ -104,7 +104,7 @@ class BaseFace:
         self._rim = contact.longest
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
-        """Contact of the points below the base's surface at positions (n_nodes, 2); None without any."""
+        """Contact at positions (n_nodes, 2); None if no point is below the base's surface."""
         line = nodes[self.edges]
         z = line[..., 1] @ self.shape.T
         if z.min() >= self.high:
@@ -115,7 +115,7 @@ class BaseFace:
         return BaseMeeting(r, traction, slope, curve) if traction.any() else None
 
     def surface(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the base at radii r, with its first two derivatives."""
+        """Height (R0) of the base at radii r, and its first two derivatives, arrays like r."""
         rim, short = self._rim, np.maximum(self.start - r, 0.0)
         height, slope, curve = -0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
         if self.high:
@@ -128,7 +128,7 @@ class BaseFace:
         return height, slope, curve
 
     def energy(self, meeting: BaseMeeting) -> float:
-        """Energy of the contact, nondimensional."""
+        """Energy of the contact, mu R0^3."""
         return float(np.vdot(self.weight, meeting.traction**2)) / (2.0 * self.stiffness)
 
     def force(self, meeting: BaseMeeting) -> Array:
@@ -140,7 +140,7 @@ class BaseFace:
         return out
 
     def hessian(self, meeting: BaseMeeting) -> Array:
-        """Second derivative by edge positions, (n_edges, 2 n, 2 n)."""
+        """Second derivative of the energy by edge positions, (n_edges, 2 n, 2 n)."""
         touching: Flags = meeting.traction > 0.0
         stiff = np.where(touching, self.stiffness, 0.0) * self.weight
         n = self.edges.shape[1]

@@ -1,6 +1,6 @@
-"""Path following of one branch of equilibria as the plate comes down: predictor, solution, stability, cutback.
+"""Path following of one branch of equilibria as the plate comes down, and the search for the branch's end.
 
-Also the search for the end of a branch, and its kind.
+Each step extrapolates, solves, checks stability, and is cut if it fails. Plate also stands for any other object.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class PlateState:
 
 
 def plate_state(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
-    """Converged state with its force and the tangent of the path."""
+    """Record of a converged state, with its force and the path's tangent. Raises ValueError without a plate."""
     solid, touch = scene.solid, state.touch
     if touch is None:
         raise ValueError("a state under the plate needs a plate")
@@ -83,11 +83,11 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
 
 
 def lost_work(path: list[PlateState], after: PlateState) -> float:
-    """Energy lost between the end of a path and `after`, as a share of the plate's work in a full step.
+    """Energy lost between the last state of a path and `after`, as a share of the plate's work in a full step.
 
-    Near zero along one branch, where dPi/dheight = -force; the dissipation by friction is accounted for.  The trapezium
-    rule for the work is corrected by the curvature of the force through three states; in the first step, where the
-    force starts at zero, by the slope at its end, which is less accurate.
+    It is near 0 along one branch, where d(energy)/d(height) = -force; dissipation by friction is no loss. The trapezium
+    rule for the work is corrected by the curvature of the force through three states; in the first step by the slope at
+    its end, and `_FIRST_STEP` is taken off the share, because this is less accurate.
     """
     here = path[-1]
     travel = here.height - after.height
@@ -110,7 +110,7 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
 
 
 class PathFollower:
-    """Keeps the states of a path and steps to further plate heights, from first contact on."""
+    """The states of a path, and steps to further plate heights, from first contact on; heights in R0."""
 
     #: 1 while the plate comes down, -1 while it goes up.
     down = 1.0
@@ -120,7 +120,7 @@ class PathFollower:
         self.path = [self._first(SolidScene(solid, supply, plate), start)]
 
     def _first(self, scene: SolidScene, start: Array) -> PlateState:
-        """Solve for first contact, near positions `start`."""
+        """State at first contact, solved near positions `start` (n_nodes, 2). Raises NoConvergenceError."""
         solved = minimise(scene, start)
         if isinstance(solved, NewtonFailure):
             raise NoConvergenceError("first contact", solved.why, "a finer mesh")
@@ -133,25 +133,26 @@ class PathFollower:
 
     @property
     def given_up(self) -> str | None:
-        """Reason why no further solves are tried after a failure, or None."""
+        """Reason why no more solves are tried after a failure; None: they are tried."""
         return None
 
     def feed(self, supply: Supply) -> None:
-        """Replace the supply of the cavity from the last state on: the next state is solved with the given one."""
+        """Replace what fills the cavity; the last state stays as it is, and the next one is solved with `supply`."""
         self.path[-1] = replace(self.here, scene=replace(self.here.scene, supply=supply))
 
     def left(self, height: float) -> float:
-        """Travel from the last state to a height; negative if the path is already past that height."""
+        """Travel (R0) from the last state to a height; negative if the path is already past that height."""
         return self.down * (self.here.height - height)
 
     def turned(self) -> Self:
-        """A follower that starts at the last state in the opposite direction."""
+        """A new follower that starts at the last state and moves the plate in the opposite direction."""
         other = copy(self)
         other.path, other.down = [self.here], -self.down
         return other
 
     def step(self, height: float) -> PlateState:
-        """Add one state to the path, at `height` or before it if the step had to be cut, and return it."""
+        """Add a state at `height`, or before it by a shorter step, and return it; NoConvergenceError if none is
+        found."""
         travel = min(self.left(height), LONGEST)
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
@@ -166,7 +167,7 @@ class PathFollower:
         raise NoConvergenceError(where, why, "a finer mesh or a smaller depth")
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """Solve for the state at `height` from an extrapolated guess; the path is not changed."""
+        """State at `height`, solved from an extrapolated guess, or the failure; the path is not changed."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
         solved = self._least(scene, self._turning(height))
         if isinstance(solved, NewtonFailure):
@@ -176,19 +177,18 @@ class PathFollower:
         return plate_state(scene, solved.state, height, solved.iterations)
 
     def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
-        """State of least energy near positions x, or the failure."""
+        """State of least energy near positions x (n_nodes, 2), or the failure."""
         return minimise(scene, x)
 
     def _extrapolate(self, height: float) -> Array:
-        """Positions extrapolated along the tangent; the present ones at first contact, without tangent."""
+        """Positions extrapolated along the path's tangent; at first contact those of the last state."""
         if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
         return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)
 
     def _turning(self, height: float) -> Array:
-        """Positions extrapolated to second order, if the last step was at least half as long as the next.
-
-        Not used with friction, where points stick or slide on as they did last.
+        """Positions extrapolated to second order; along the tangent if the next step is over twice as long as the last
+        or there are fewer than three states. Not used with friction.
         """
         guess = self._extrapolate(height)
         if len(self.path) < 3 or height == self.here.height:
@@ -215,7 +215,7 @@ _GROWS = 2.0
 
 @dataclass(frozen=True)
 class PathJump:
-    """End of a path: its kind, the plate height (R0) of the last state before it, and the reason."""
+    """End of a path: its kind as in `SolidEvent`, the plate height (R0) of the last state before it, and the reason."""
 
     kind: str
     height: float
@@ -223,7 +223,7 @@ class PathJump:
 
 
 def descend(follower: PathFollower, height: float) -> PathJump | None:
-    """Continue the path to `height`; None, or the jump at which the path ends, its last state before the jump."""
+    """Continue the path to `height` (R0); returns None, or the jump before which the path ends."""
     if not follower.here.stable:
         return PathJump("unstable", follower.here.height, "the state itself is unstable with its gas shut in")
     while follower.left(height) > 1.0e-12:
@@ -255,10 +255,10 @@ def _sound(path: list[PlateState], after: PlateState) -> bool:
 
 
 def _close_in(follower: PathFollower, end: float) -> PathJump | None:
-    """Bisect between the last sound state and a height at which the next state is not sound or not found; None if that
-    height is reached on one branch after all.
+    """Bisect between the last sound state and the height ``end``, where the state is not sound or not found; returns
+    the jump, or None if the path reaches ``end`` on one branch after all.
 
-    A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps.
+    A state may be sound when it is approached in shorter steps, so the last bracket is repeated in short steps.
     """
     begun = follower.here
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
@@ -288,10 +288,10 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
 
 
 def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) -> PathJump | None:
-    """Search a little beyond a failed solve, which is no evidence of another branch, before naming the end; None if the
-    path continues soundly there, as it may after a height at which friction releases a point.
+    """End of a path at a failed solve, which by itself does not show another branch: the states a little beyond decide.
+    None if the path continues soundly there, as it may after a height at which friction releases a point.
 
-    With friction the search has no energy to go by and often finds nothing: then the path itself shows the end.
+    With friction there is no energy to minimise, and often nothing is found: a limit point of the path is tried first.
     """
     here = follower.here
     if here.friction is not None and (turn := _limit_point(follower.path)) is not None:
@@ -340,7 +340,7 @@ def _speed(state: PlateState) -> float:
 
 
 def _stays_away(here: PlateState, other: PlateState) -> bool:
-    """True if the wall stays in another equilibrium of lower energy when the plate is moved back: a jump."""
+    """True if, with the plate moved back to ``here``, the wall of ``other`` stays apart with less energy: a jump."""
     back = minimise(here.scene, other.state.x)
     if isinstance(back, NewtonFailure):
         return False
@@ -354,7 +354,7 @@ def _jump(path: list[PlateState], after: PlateState) -> PathJump:
 
 
 def _kind(here: PlateState, move: Array) -> str:
-    """Kind of a jump: clamp_fold if the wall moves most within a wall thickness of its clamp, else snap."""
+    """Kind of a jump: clamp_fold if the node that moves most is within a wall thickness of the clamp, else snap."""
     solid = here.scene.solid
     moved = solid.rest[np.linalg.norm(move, axis=1).argmax()]
     held = solid.rest[solid.mesh.clamped]

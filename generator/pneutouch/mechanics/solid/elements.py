@@ -1,6 +1,5 @@
-"""Shape functions, quadrature and strain operators of a mesh (total Lagrangian), and the volume that its wall encloses.
-
-All is nondimensional: volumes in R0^3, pressures in mu.
+"""Shape functions, quadrature and strain operators of a mesh (total Lagrangian), the volume that its wall encloses, and
+the potentials of what fills it. All is nondimensional: lengths in R0, volumes in R0^3, pressures in mu.
 """
 
 from __future__ import annotations
@@ -32,7 +31,8 @@ _MIDDLES = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
 
 
 def line_shapes(x: Array, nodes: int) -> tuple[Array, Array]:
-    """Shape functions and derivatives on [-1, 1], nodes in the order start, end, (mid); each (n_points, nodes)."""
+    """Values and derivatives (n_points, nodes) at x (n_points,) in [-1, 1] of the shape functions of an edge with 2 or
+    3 nodes: start, end, (middle)."""
     if nodes == 2:
         return np.stack([0.5 - 0.5 * x, 0.5 + 0.5 * x], axis=1), np.tile([-0.5, 0.5], (x.size, 1))
     values = np.stack([0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x], axis=1)
@@ -40,9 +40,8 @@ def line_shapes(x: Array, nodes: int) -> tuple[Array, Array]:
 
 
 def _tensor(points: Array, per_side: int) -> tuple[Array, Array]:
-    """Lagrange shapes (n_points, per_side**2) and gradients (n_points, per_side**2, 2) in the node order of
-    `SolidMesh`.
-    """
+    """Lagrange shapes (n_points, per_side**2) and their gradients (n_points, per_side**2, 2), nodes as in
+    `SolidMesh`."""
     (fx, dx), (fy, dy) = (line_shapes(points[:, k], per_side) for k in (0, 1))
     where = {-1.0: 0, 1.0: 1, 0.0: 2}
     spots = _CORNERS if per_side == 2 else np.concatenate([_CORNERS, _MIDDLES, [[0.0, 0.0]]])
@@ -65,14 +64,14 @@ def cell_shapes(points: Array, nodes: int) -> tuple[Array, Array]:
 
 
 def gauss_square(n: int) -> tuple[Array, Array]:
-    """Gauss points of the n x n rule, (n*n, 2), and their weights on [-1, 1]^2."""
+    """Gauss points (n*n, 2) on [-1, 1]^2 of the n x n rule, and their weights (n*n,)."""
     x, w = np.polynomial.legendre.leggauss(n)
     grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
     return grid, np.outer(w, w).ravel()
 
 
 def positions(nodes: Array, cells: Index, points: Array) -> Array:
-    """Positions (n_cells, n_points, 2) of points with local coordinates ``points`` in every cell."""
+    """Positions (n_cells, n_points, 2) in every cell of the points with local coordinates ``points`` (n_points, 2)."""
     return np.asarray(np.einsum("qa,eai->eqi", cell_shapes(points, cells.shape[1])[0], nodes[cells]))
 
 
@@ -99,10 +98,9 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
 
 @dataclass(frozen=True)
 class IntegrationScheme:
-    """Integration of a cell: `gauss` points per side, and number of modes on which J is averaged.
-
-    pressure: 1 constant, 3 linear (1, xi, eta), 4 bilinear.  With 2 x 2 points and 4 modes J is taken point by point:
-    uniformly reduced integration.
+    """Integration of a cell: `gauss` points per side, and `pressure`, the number of modes onto which the volume ratio J
+    is projected: 1 constant, 3 linear (1, xi, eta), 4 bilinear. With 2 x 2 points and 4 modes J is taken point by
+    point: uniformly reduced integration.
     """
 
     gauss: int
@@ -113,7 +111,8 @@ DEFAULT_SCHEME = {4: IntegrationScheme(2, 1), 8: IntegrationScheme(2, 4), 9: Int
 
 
 def pressure_modes(points: Array, measure: Array, count: int) -> Array:
-    """Modes orthonormal under the reference measure of each cell; (n_cells, count, n_points)."""
+    """The first ``count`` of 1, xi, eta, xi eta at local points (n_points, 2), made orthonormal in each cell under the
+    reference measure (n_cells, n_points), weights included; (n_cells, count, n_points)."""
     x, y = points[:, 0], points[:, 1]
     raw = np.stack([np.ones_like(x), x, y, x * y][:count])
     root = np.sqrt(measure)[:, None, :]
@@ -123,11 +122,11 @@ def pressure_modes(points: Array, measure: Array, count: int) -> Array:
 
 @dataclass(frozen=True)
 class TermState:
-    """An added part of the total energy at one set of positions: energy, gradient (size,), and second derivatives, None
-    where the part has none. ``blocks`` belong to `SolidModel.faces.outer` (edges of the outer wall), ``inner_blocks``
-    to `SolidModel.faces.inner` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` to
-    `SolidModel.faces.fold` (edges of the outer wall with the flange's top); ``around`` is by displacements of the edges
-    of the outer wall around the axis, (n_edges, n, n)."""
+    """A further part of the total energy at one set of positions: energy, gradient (size,), and second derivatives,
+    None where the part has none. ``blocks`` belong to `SolidModel.faces.outer` (edges of the outer wall),
+    ``inner_blocks`` to `SolidModel.faces.inner` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and
+    ``fold_blocks`` to `SolidModel.faces.fold` (edges of the outer wall with the flange's top); ``around`` is by
+    displacements of the edges of the outer wall around the axis, (n_edges, n, n)."""
 
     energy: float
     gradient: Array
@@ -138,8 +137,8 @@ class TermState:
 
 
 class EnergyTerm(Protocol):
-    """Interface of an added part of the total energy of wall, filling and plate: base below the wall, or friction in
-    one step.
+    """Interface of a part of the total energy beside wall, filling and plate: the base below the wall, its flange, or
+    friction in one step.
 
     ``noise`` is the error that rounding leaves in the gradient, as a force.
     """
@@ -152,9 +151,9 @@ class EnergyTerm(Protocol):
 
 
 class Cavity:
-    """V = pi int r^2 dz along the wetted wall from base to apex; r^2 z' is integrated exactly.
+    """The volume V = pi int r^2 dz along the inner wall from base to apex; r^2 z' is integrated exactly.
 
-    It is the volume above the plane through the first point of the line; a flat floor below adds only a constant.
+    It is the volume above the plane through the wall's first point; a flat floor below would add only a constant.
     """
 
     def __init__(self, edges: Index) -> None:
@@ -166,14 +165,15 @@ class Cavity:
         self._form = np.pi * np.einsum("q,qi,qj,qk->ijk", w, value, value, slope).reshape(n * n, n)
 
     def _parts(self, nodes: Array) -> tuple[Array, Array, Array, Array]:
-        """Edge coordinates r and z, form contracted with z, and its product with r."""
+        """Coordinates r and z of the edges' nodes (n_edges, n), the form's product with z (n_edges, n, n), and with
+        r."""
         line = nodes[self.edges]
         r, z = line[..., 0], line[..., 1]
         by_z = (z @ self._form.T).reshape(-1, self._n, self._n)
         return r, z, by_z, np.matmul(by_z, r[..., None])[..., 0]
 
     def volume(self, nodes: Array) -> float:
-        """Enclosed volume; nodes (n_nodes, 2)."""
+        """Enclosed volume at nodal positions (n_nodes, 2)."""
         r, _, _, half = self._parts(nodes)
         return float(np.vdot(r, half))
 
@@ -197,7 +197,7 @@ class Cavity:
 
 
 class FillingState(NamedTuple):
-    """Potential, gauge pressure and rate -dp/dV at one volume."""
+    """Potential, gauge pressure and rate -dp/dV of a filling at one cavity volume."""
 
     energy: float
     pressure: float
@@ -205,21 +205,21 @@ class FillingState(NamedTuple):
 
 
 class Supply(Protocol):
-    """A filling with a potential of the cavity volume."""
+    """Interface of what fills the cavity: its potential depends on the cavity volume alone."""
 
     def at(self, volume: float) -> FillingState | None:
-        """Potential, pressure and rate, or None if the volume is impossible."""
+        """Potential, pressure and rate at a volume; None if the filling cannot have this volume."""
         ...
 
 
 @dataclass(frozen=True)
 class Regulator:
-    """A constant gauge pressure."""
+    """A filling at a constant gauge pressure."""
 
     pressure: float
 
     def at(self, volume: float) -> FillingState:
-        """Potential -p V."""
+        """Potential -p V, pressure p and rate 0."""
         return FillingState(-self.pressure * volume, self.pressure, 0.0)
 
 
@@ -242,7 +242,7 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Gas:
-    """Trapped isothermal gas: absolute pressure times (V + dead) stays `content`; shut in at the volume `start`."""
+    """Trapped isothermal gas: absolute pressure times (V + `dead`) stays `content`; shut in at the volume `start`."""
 
     content: float
     ambient: float
@@ -251,11 +251,11 @@ class Gas:
 
     @classmethod
     def filled(cls, pressure: float, volume: float, ambient: float, dead: float) -> Gas:
-        """The gas shut in at a gauge pressure and cavity volume."""
+        """The gas shut in at a gauge pressure and a cavity volume."""
         return cls((pressure + ambient) * (volume + dead), ambient, dead, volume)
 
     def at(self, volume: float) -> FillingState | None:
-        """Potential -[C ln((V + dead)/(start + dead)) - ambient (V - start)].
+        """Potential ambient (V - start) - content ln((V + dead)/(start + dead)); None for V + dead <= 0.
 
         Counted from the shut-in state: with a large dead volume the rounding of the full potential would hide the work.
         """

@@ -28,7 +28,7 @@ def printed_dome(
     """Mesh of a dome whose rim continues below z = 0 as a flange (mm), clamped on its inside, underside and outside.
 
     The flange's top is free, as in the connector's groove, so the foot of the wall yields slightly. Nine-node cells;
-    ``arc`` and ``through`` as for ``dome``.
+    ``arc`` and ``through`` as in `mesh.dome`.
     """
     n, m = cell_counts(shape, arc, through)
     wall, outer = shape.wall_thickness, shape.outer_radius
@@ -62,7 +62,7 @@ def printed_dome(
 
 
 def _rectangle(r: Array, z: Array) -> Array:
-    """Points of a rectangular block, columns along z and rows along r as in the dome; (len(z), len(r), 2)."""
+    """Points (len(z), len(r), 2) of a rectangular block, (r, z), in the order of the dome's grid."""
     return np.stack(np.broadcast_arrays(r[None, :], z[:, None]), axis=-1)
 
 
@@ -92,8 +92,8 @@ class _Touch(NamedTuple):
 
 
 def meeting_nodes(mesh: SolidMesh) -> Index:
-    """Nodes coupled by the contact, (n_edges, 3 + n_top): those of each edge of the outer wall within a flange width of
-    its foot, and those of the flange's top; no rows without a flange."""
+    """Nodes coupled by the contact of wall and flange, (n_edges, 3 + n_top): the 3 of each edge of the outer wall that
+    lies within a flange width of its foot, then those of the flange's top; no rows without a flange."""
     top = top_nodes(mesh)
     if top.size == 0:
         return np.zeros((0, 3), np.intp)
@@ -104,14 +104,14 @@ def meeting_nodes(mesh: SolidMesh) -> Index:
 
 
 def top_nodes(mesh: SolidMesh) -> Index:
-    """Nodes of the flange's top from the foot of the wall to the rim, (n_top,)."""
+    """Nodes of the flange's top from the foot of the wall to the rim, (n_top,); none without a flange."""
     if mesh.flange.size == 0:
         return np.zeros(0, np.intp)
     return np.append(mesh.flange[:, [0, 2]].ravel(), mesh.flange[-1, 1])
 
 
 class FlangeContact:
-    """Contact energy psi = (k/2) sum w <-g>^2 on the outer wall near its foot; an `EnergyTerm`.
+    """Contact energy (k/2) sum w <-g>^2 on the outer wall near its foot, an `EnergyTerm`; symbols as in `BaseContact`.
 
     g is the height of a point of the wall over the top of the flange at the same radius. The top is the natural cubic
     spline through its nodes: its tangent is continuous, and so the energy is once continuously differentiable.
@@ -156,7 +156,7 @@ class FlangeContact:
         return BaseLoad(float(np.vdot(self._weight, met.traction)), most, most / self._stiffness)
 
     def _meet(self, x: Array) -> _Touch | None:
-        """Contact of the wall points below the flange's top at positions x (n_nodes, 2); None without any."""
+        """Contact at positions x (n_nodes, 2); None if no point of the wall is below the flange's top."""
         line, top = x[self._edges], x[self._top]
         r, z = line[..., 0] @ self._shape.T, line[..., 1] @ self._shape.T
         # A spline rises over its highest node by less than its nodes differ.
@@ -168,17 +168,17 @@ class FlangeContact:
         return _Touch(place, np.where(below, -self._stiffness * height, 0.0)) if below.any() else None
 
     def _directions(self, tilt: Array, n: Array) -> Array:
-        """Derivative of the gaps by the positions of wall and top, interleaved r and z, (n_edges, n_points, 2 m)."""
+        """Derivative of the gaps by the coordinates, r and z in turn, of the m nodes of edge and top, (n_edges,
+        n_points, 2 m); ``tilt``: slope of the top, ``n``: values of the cardinal splines."""
         out = np.empty((*tilt.shape, 2 * (3 + n.shape[-1])))
         out[..., 0:6:2], out[..., 1:6:2] = -tilt[..., None] * self._shape, self._shape
         out[..., 6::2], out[..., 7::2] = tilt[..., None] * n, -n
         return out
 
     def _curvature(self, tilt: Array, bend: Array, n: Array, turn: Array) -> Array:
-        """Second derivative of the gaps by positions, (n_edges, n_points, 2 m, 2 m); ``turn`` are slopes over speed.
-
-        The place on the top follows from its radius: d place = (dr - n dR) / speed.
-        """
+        """Second derivative of the gaps by coordinates, (n_edges, n_points, 2 m, 2 m); arguments as in `_directions`;
+        ``bend``, ``turn``: derivatives by radius of ``tilt`` and ``n``. The place on the top depends on its node radii
+        R: d place = (dr - n dR) / speed, with speed = d(radius)/d(place)."""
         m = 2 * (3 + n.shape[-1])
         # Change of the radius of a point relative to the top: only this makes a gap nonlinear.
         slide = np.zeros((*tilt.shape, m))
@@ -205,7 +205,7 @@ def cardinal_splines(count: int) -> Array:
 
 
 def evaluated(spline: Array, place: Array) -> tuple[Array, Array, Array]:
-    """Values and first two derivatives (..., count) at places (...); linear beyond the ends."""
+    """Values and first two derivatives (..., count) of `cardinal_splines` at places (...); linear beyond the ends."""
     last = spline.shape[0]
     held = np.clip(place, 0.0, last)
     beyond = (place - held)[..., None]
@@ -218,7 +218,7 @@ def evaluated(spline: Array, place: Array) -> tuple[Array, Array, Array]:
 
 
 def _located(spline: Array, radii: Array, r: Array) -> Array:
-    """Spline coordinates at which the top, with node radii ``radii``, has the radii r."""
+    """Spline coordinates, like r, at which the top with node radii ``radii`` (n_top,) has the radii r."""
     first = (r - radii[0]) / (radii[1] - radii[0])
     place = np.where(r < radii[0], first, np.interp(r, radii, np.arange(radii.size)))
     for _ in range(_ROOT_STEPS):

@@ -1,8 +1,8 @@
 """Coulomb friction between outer wall and pressing object, by return mapping at the quadrature points of the contact.
 
-A touching point is held by a stiff spring along the object's surface, from the place where it first touched. The
-spring's traction is limited to the coefficient times the normal traction: beyond, the place of rest slides along.
-Tractions are per area at rest, in mu; lengths in R0.
+A stiff spring along the object's surface holds a touching point at its place of rest, where it first touched. The
+spring's traction is at most the coefficient times the normal traction: at this limit the place of rest slides along.
+Tractions are per area at rest, in mu; lengths in R0; n is the number of nodes of an edge.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ class FrictionPoints:
         return np.abs(self.slip)
 
     def path(self, past: FrictionPoints) -> Array:
-        """Slip in the direction of an earlier traction."""
+        """Slip, positive in the direction of the traction in ``past``."""
         return np.asarray(np.sign(past.traction) * self.slip)
 
 
 @dataclass(frozen=True)
 class FrictionStep:
-    """Friction for one position of the object: ``rest`` (n_edges, n_points) are the radii at which the points of the
-    wall rest or first touch; ``stiffness`` in mu/R0."""
+    """Friction for one position of the object, ``plate``: ``rest`` (n_edges, n_points) are the radii at which the
+    points of the wall rest or will first touch; ``stiffness`` of the springs in mu/R0."""
 
     contact: Contact
     plate: Indenter
@@ -68,30 +68,30 @@ class FrictionStep:
     stiffness: float
 
     def slip(self, x: Array, slope: Array) -> Array:
-        """Displacement of the points from their places of rest, along tangents of given slopes."""
+        """Displacement (n_edges, n_points) from the places of rest to positions x, along tangents of ``slope``."""
         r, z = self.contact.positions(x)
         height = self.plate.underside(self.rest)[0]
         return np.asarray((r - self.rest + slope * (z - height)) / np.hypot(1.0, slope))
 
     def change(self, move: Array, slope: Array) -> Array:
-        """Change of `slip` with a nodal displacement (n_nodes, 2)."""
+        """Change of `slip` by a nodal displacement ``move`` (n_nodes, 2)."""
         r, z = self.contact.positions(move)
         return np.asarray((r + slope * z) / np.hypot(1.0, slope))
 
     def cap(self, traction: Array, slope: Array) -> Array:
-        """Largest tangential traction under given vertical tractions per area at rest; 0 without contact."""
+        """Largest tangential traction at given vertical tractions (n_edges, n_points) and slopes; 0 if not positive."""
         out = np.zeros_like(traction)
         np.multiply(self.coefficient, traction * np.hypot(1.0, slope), out=out, where=traction > 0.0)
         return out
 
     def rate(self, sign: Array, slope: Array) -> Array:
-        """Traction of sliding points per vertical traction; ``sign``: direction of sliding, 0 for other points."""
+        """Ratio of tangential to vertical traction of sliding points; ``sign``: direction of sliding, else 0."""
         out = np.zeros_like(sign)
         np.multiply(self.coefficient, sign * np.hypot(1.0, slope), out=out, where=sign != 0.0)
         return out
 
     def at(self, x: Array, touch: ContactEvaluation) -> FrictionPoints:
-        """Return mapping at positions x (n_nodes, 2) with the contact evaluated there."""
+        """Friction at positions x (n_nodes, 2) by return mapping; ``touch`` is the contact there."""
         cap, slip = self.cap(touch.traction, touch.slope), self.slip(x, touch.slope)
         trial = self.stiffness * slip
         touching = touch.traction > 0.0
@@ -99,7 +99,7 @@ class FrictionStep:
         return FrictionPoints(np.clip(trial, -cap, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
 
     def force(self, traction: Array, slope: Array) -> Array:
-        """Force on the outer edges (n_edges, 2 n) of tractions along the surface: gradient of the energy."""
+        """Gradient of the energy by outer edges (n_edges, 2 n) for given tractions along the surface."""
         load = self.contact.weight * traction / np.hypot(1.0, slope)
         out = np.empty((load.shape[0], 2 * self.contact.shape.shape[1]))
         out[:, RADIAL] = load @ self.contact.shape
@@ -124,8 +124,8 @@ class FrictionStep:
         return self.contact.blocks([(RADIAL, RADIAL, share)])[:, RADIAL, RADIAL]
 
     def slide(self, traction: Array, touch: ContactEvaluation, sign: Array) -> Array | None:
-        """Unsymmetric part of the stiffness, (n_edges, 2 n, 2 n), or None: the traction of sliding points (nonzero
-        ``sign``) follows the normal traction, and its direction follows the surface."""
+        """Unsymmetric part of the stiffness, (n_edges, 2 n, 2 n): the traction of sliding points (nonzero ``sign``)
+        follows the normal traction, and its direction follows the surface. None if no point slides on a flat one."""
         slope = touch.slope
         if not slope.any():
             by_z = self.rate(sign, slope) * self.contact.stiffness
@@ -145,15 +145,15 @@ class FrictionStep:
         )
 
     def stored(self, points: FrictionPoints) -> float:
-        """Energy stored in the springs."""
+        """Energy stored in the springs, mu R0^3."""
         return float(np.vdot(self.contact.weight, points.pull**2)) / (2.0 * self.stiffness)
 
     def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
-        """Friction term with the traction limits and slopes of given points held."""
+        """Friction as an energy term, with the traction limits and slopes held at those of ``points``."""
         return FrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Radii at which the points rest after the step; NaN without contact."""
+        """Radii (n_edges, n_points) at which the points rest after a step to positions x; NaN without contact."""
         r, _ = self.contact.positions(x)
         slid = r - points.traction / self.stiffness / points.secant
         return np.where(points.sliding, slid, np.where(points.sticking, self.rest, np.nan))
@@ -161,7 +161,7 @@ class FrictionStep:
 
 class FrictionTerm:
     """Friction with the traction limits (``cap``) and the slopes held: the pseudo-potential of a step, convex in the
-    slip; an `EnergyTerm`. Its gradient is that of friction if the held values belong to the positions."""
+    slip; an `EnergyTerm`. At the positions of the held values its gradient is the force of friction."""
 
     def __init__(self, solid: SolidModel, step: FrictionStep, held: FrictionPoints) -> None:
         self.solid, self.step, self.held = solid, step, held
@@ -169,7 +169,7 @@ class FrictionTerm:
         self.noise = solid.contact.noise * step.stiffness / solid.contact.stiffness
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, plus the limited traction times the slip beyond the limit."""
+        """Energy stored in the springs, plus the traction limit times the slip beyond the limit, mu R0^3."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = np.clip(trial, -self.held.cap, self.held.cap)
         return float(np.vdot(self.solid.contact.weight, bears * (trial - 0.5 * bears))) / self.step.stiffness
@@ -197,14 +197,14 @@ class FrictionState:
 
     @classmethod
     def after(cls, before: FrictionState | None, step: FrictionStep, x: Array, points: FrictionPoints) -> FrictionState:
-        """Friction at the end of a step at positions x (n_nodes, 2)."""
+        """Friction at the end x (n_nodes, 2) of a step that began at ``before``; None: the step to first contact."""
         return cls(
             points, step.moved(x, points), step.stiffness, step.stored(points), _dissipated(before, step, points)
         )
 
 
 def _dissipated(before: FrictionState | None, step: FrictionStep, points: FrictionPoints) -> float:
-    """Work of the tractions over the sliding of a step, by the trapezium rule.
+    """Work (mu R0^3) of the tractions over the sliding of a step, by the trapezium rule; ``before`` None: first step.
 
     Sliding begins at the last traction, or at the lesser of last and present limit if that is more, and ends at the
     present limit. A point that slid and is released is taken to leave in the middle of the step. A point that stuck and

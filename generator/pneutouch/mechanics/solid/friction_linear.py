@@ -26,7 +26,7 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 @dataclass(frozen=True)
 class PointStatus:
-    """Status of points: touching; bearing (friction may hold them); sign (of the slip of sliding points, else 0)."""
+    """Status of points: touching; bearing (friction can hold them); sign (of the slip of sliding points, else 0)."""
 
     touching: Flags
     bearing: Flags
@@ -39,13 +39,13 @@ class PointStatus:
 
     @property
     def edges(self) -> Index:
-        """Edges of the outer wall with points in contact."""
+        """Numbers of the outer wall's edges with points in contact."""
         return np.flatnonzero(self.touching.any(axis=tuple(range(1, self.touching.ndim))))
 
     def then(self, new: PointStatus) -> PointStatus:
-        """Status to try after this one led to another.
+        """Status to try next if solving with this one gave the status ``new``.
 
-        A point that would reverse its sliding sticks first: otherwise points of one sign would alternate for ever.
+        A point that would reverse its sliding sticks first: otherwise it could alternate between both signs for ever.
         """
         return replace(new, sign=np.where(new.sign == -self.sign, 0.0, new.sign))
 
@@ -63,7 +63,7 @@ class PointTractions:
     trial: Array
 
     def towards(self, other: PointTractions, share: float | Array) -> PointTractions:
-        """Tractions at a share of the way to others, or at shares (n,), which become the first axis."""
+        """Tractions at a share of the way to ``other``, or at shares (n,), which become the first axis."""
         return PointTractions(_between(self.normal, other.normal, share), _between(self.trial, other.trial, share))
 
 
@@ -73,7 +73,7 @@ def _between(here: Array, there: Array, share: float | Array) -> Array:
 
 
 def touched(tractions: PointTractions, before: int | None = None) -> Index:
-    """Edges of the outer wall with points in contact, among those before a number."""
+    """Numbers of the outer wall's edges with points in contact, of those before the edge ``before`` (None: all)."""
     normal = tractions.normal[:before]
     return np.flatnonzero((normal > 0.0).any(axis=tuple(range(1, normal.ndim))))
 
@@ -85,7 +85,7 @@ _FLAT = 1.0e-9
 
 
 class PiecewiseLine:
-    """The line from the tractions ``begun`` towards ``ended``, those of the linear model of a status; points (n,) each.
+    """The line from the tractions ``begun`` to ``ended``, to which the linear model of ``status`` leads; n points each.
 
     response: (2 n, 2 n) change of the tractions, normal first, by loads of unit tractions under that status; it is
     overwritten.  areas: (2, n) area of a point over the stiffness of its springs, normal and along the surface. grip:
@@ -114,7 +114,7 @@ class PiecewiseLine:
             self._bound(j)
 
     def status(self) -> PointStatus | None:
-        """Status at the end of the line; None if the line turns back or passes too many pieces."""
+        """Status at the end of the line, piece after piece; None if it turns back or passes too many pieces."""
         n = self._grip.size
         for _ in range(_MOST * n):
             margin = self._by_normal * self._at[:n] + self._by_trial * self._at[n:] + self._free
@@ -132,7 +132,7 @@ class PiecewiseLine:
         return None
 
     def _cross(self, side: int, j: int) -> bool:
-        """Enter the piece beyond a margin of a point; False if the line turns back there."""
+        """Enter the piece beyond margin ``side`` (0 contact; 1, 2 sliding) of point j; False if the line turns back."""
         n = self._grip.size
         trial, grip, held = float(self._at[n + j]), float(self._grip[j]), self._held
         across, along = self._areas[:, j]
@@ -156,7 +156,7 @@ class PiecewiseLine:
         return self._change(j, push, gap)
 
     def _change(self, j: int, push: tuple[float, float], gap: tuple[float, float]) -> bool:
-        """Change the stiffness by the product of a load on a point and a combination of its tractions."""
+        """Add to the stiffness a load on point j times a combination of its tractions; False if it becomes too flat."""
         n, response = self._grip.size, self._response
         column = push[0] * response[:, j] + push[1] * response[:, n + j]
         row = gap[0] * response[j] + gap[1] * response[n + j]
@@ -169,7 +169,7 @@ class PiecewiseLine:
         return True
 
     def _bound(self, j: int) -> None:
-        """Set the margins of a point in its present piece."""
+        """Set the margins of point j in its present piece."""
         grip, held, sign = float(self._grip[j]), self._held, float(self._sign[j])
         touching, bearing = bool(self._touching[j]), bool(self._bearing[j])
         sticks = bearing and sign == 0.0
@@ -207,7 +207,7 @@ class LinearContact:
 
     @cached_property
     def _grip(self) -> Array:
-        """Limit of the traction along the surface over the normal traction."""
+        """Limit of the traction along the surface over the normal traction, (n_edges, n_points)."""
         return self.step.coefficient * self.points.secant
 
     def at(self, move: Array) -> PointTractions:
@@ -264,7 +264,7 @@ class LinearContact:
         return PointStatus(touching, bearing, np.where(bearing & (np.abs(at.trial) > cap), np.sign(at.trial), 0.0))
 
     def under(self, status: PointStatus, at: PointTractions) -> PointTractions:
-        """Tractions of points under a fixed status."""
+        """Tractions ``at`` as they are with a fixed status: 0 without contact, at the limit for sliding points."""
         normal = np.where(status.touching, at.normal, 0.0)
         slides = status.sign * (self.points.cap if self.held else self._grip * normal)
         return PointTractions(normal, np.where(status.sticking, at.trial, slides))
@@ -282,12 +282,12 @@ class LinearContact:
         return both, None if self.held else self.step.slide(begun.trial, self.touch, status.sign)
 
     def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
-        """Work of tractions over the displacement from one pair of tractions to another."""
+        """Work of ``tractions`` over the displacement that changes the unlimited ones from ``begun`` to ``ended``."""
         normal = np.vdot(self._weight * tractions.normal, ended.normal - begun.normal) / self.solid.contact.stiffness
         return float(normal + np.vdot(self._weight * tractions.trial, ended.trial - begun.trial) / self.step.stiffness)
 
     def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
-        """Work (n,), over the displacement between two tractions, of the limited tractions at shares (n,) of it."""
+        """Work (n,) over the displacement from ``begun`` to ``ended`` of the limited tractions at shares (n,) of it."""
         change = begun.towards(ended, shares)
         normal = np.maximum(change.normal, 0.0)
         cap = self._cap(normal)

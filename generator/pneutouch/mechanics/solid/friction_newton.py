@@ -62,8 +62,8 @@ _WHOLE = np.array([0.0, 1.0])
 
 @dataclass(frozen=True)
 class _Place:
-    """Present point of the rounds: trailing unknowns, and tractions. The residual without contact is the share
-    ``begun`` of its value before a move, less the force of ``balanced``."""
+    """Point reached in the rounds: trailing unknowns and tractions ``at`` them. The residual without contact is there
+    ``begun`` times its value before the step, less the force of the tractions ``balanced``."""
 
     unknowns: Array
     at: PointTractions
@@ -101,7 +101,7 @@ class StepSettling:
             edge = int(met[0])
 
     def _settle(self, edge: int) -> Array | None:
-        """Step with the edges before ``edge`` free of contact; None also if the band was raised."""
+        """Step (size,) with the edges before ``edge`` free of contact; None if not settled or the band was raised."""
         first = self._sides.first_unknown(edge)
         contact, system = self._contact, ContactSystem(self._sides, self._band, self._state, self._state.inner, first)
         none = PointTractions(np.zeros_like(self._still.normal), np.zeros_like(self._still.trial))
@@ -137,8 +137,8 @@ class StepSettling:
     def _settled(
         self, system: ContactSystem, edge: int, status: PointStatus, after: PointTractions
     ) -> PointStatus | None:
-        """Status settled one point after another from the start of the step, given a status that led to tractions
-        ``after``; None if that fails."""
+        """Status settled one point after another from the start of the step, along the line to the tractions ``after``
+        to which ``status`` leads; None if that fails."""
         contact = self._contact
         both, one_sided = contact.blocks(status, contact.under(status, self._still))
         response = system.response(both if one_sided is None else both + one_sided, contact.rows(edge))
@@ -155,7 +155,7 @@ class StepSettling:
         return whole
 
     def _solve(self, system: ContactSystem, status: PointStatus, first_round: bool) -> Array | None:
-        """Solution of the linear model for one status; None, with the band raised for another try, if not definite."""
+        """Trailing unknowns of the linear model for one status; None, with the band raised, if it is not definite."""
         begun = self._contact.under(status, self._still)
         both, one_sided = self._contact.blocks(status, begun)
         push = self._contact.force(begun)
@@ -173,7 +173,7 @@ class StepSettling:
         return system.solve(push, both if one_sided is None else both + one_sided)
 
     def _advanced(self, system: ContactSystem, here: _Place, there: _Place) -> tuple[_Place, bool]:
-        """Point towards the end of a round up to which the work of the residual falls, and True if that is the end."""
+        """End ``there`` of a round and True, or the point on the way where the work of the residual is 0, and False."""
         contact, move = self._contact, there.unknowns - here.unknowns
         begun = here.begun * float(move @ system.begun) - contact.work(here.balanced, here.at, there.at)
         ended = -contact.work(there.balanced, here.at, there.at)
@@ -191,7 +191,7 @@ class StepSettling:
         ), False
 
     def _trailing(self, unknowns: Array) -> Array:
-        """Nodal displacement (n_nodes, 2) of the trailing unknowns, with all others fixed."""
+        """Nodal displacement (n_nodes, 2) with the given trailing unknowns; all others are 0."""
         whole = np.zeros(self._solid.size)
         whole[-unknowns.size :] = unknowns
         return self._solid.expand(whole)
@@ -207,7 +207,7 @@ SETTLING = 6
 
 @dataclass(frozen=True)
 class HeldState:
-    """A state of the scene with friction at its points; residual: of both together (size,); scale: of its forces."""
+    """A state with friction: energy, ``residual`` (size,), force ``scale`` include friction, ``pull`` (size,) is it."""
 
     state: SolverState
     touch: ContactEvaluation
@@ -228,7 +228,7 @@ class SlidingResult:
 
 
 class FrictionSolver:
-    """Solver of the steps along the path of one scene; ``scene`` is without friction."""
+    """Solver of one step with friction; ``scene`` is that at the step's end, without friction."""
 
     def __init__(self, scene: SolidScene, step: FrictionStep, sides: OneSidedBlocks) -> None:
         self.scene, self.step, self.sides = scene, step, sides
@@ -268,7 +268,7 @@ class FrictionSolver:
             iteration += 1
 
     def hold(self, state: SolverState) -> HeldState:
-        """State with friction from an evaluated state."""
+        """The evaluated ``state`` with friction at its points."""
         assert state.touch is not None
         points = self.step.at(state.x, state.touch)
         term = self.step.held(self.solid, points)
@@ -302,8 +302,8 @@ class FrictionSolver:
         return downhill(here.state, band, here.residual).step
 
     def reached(self, held: HeldState) -> ContactSystem:
-        """System of wall, filling and touching points, without friction; unknowns that the contact does not reach are
-        eliminated."""
+        """System of wall, filling and touching points, without friction and loads; unknowns that the contact does not
+        reach are eliminated."""
         touching = touched(PointTractions(held.touch.traction, held.points.traction))
         first = self.sides.first_unknown(int(touching[0])) if touching.size else 0
         band = full_tangent(self.scene, held.state)

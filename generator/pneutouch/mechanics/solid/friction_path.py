@@ -1,5 +1,5 @@
-"""Path following with friction while the plate comes down or goes up: each accepted state stores where its points
-stick, and every step, including a cut or repeated one, starts from there."""
+"""Path following with friction while the plate comes down or goes up: each accepted state stores the places at which
+its points stick, and every step, including a cut or repeated one, starts from these places."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class FrictionFollower(PathFollower):
         return friction_plate_state(solver, solved, None)
 
     def feed(self, supply: Supply) -> None:
-        """Replace the supply of the cavity as in `PathFollower`; the places of rest are unchanged."""
+        """Replace what fills the cavity as in `PathFollower.feed`; the places of rest are unchanged."""
         super().feed(supply)
         self._bare = replace(self._bare, supply=supply)
 
@@ -61,7 +61,7 @@ class FrictionFollower(PathFollower):
         return other
 
     def _stuck(self) -> PlateState:
-        """The last state with the rates of a path on which all touching points stick."""
+        """The last state, with the rates by height that it has if all touching points stick."""
         here = self.here
         assert here.friction is not None
         solver = self._solver(here.height, _known(here.friction.rest, self._places(here.state.x)))
@@ -76,11 +76,11 @@ class FrictionFollower(PathFollower):
         return replace(here, force=force, by_height=by_height, stiffness=stiffness, pressure_rate=rate)
 
     def _places(self, x: Array) -> Array:
-        """Radii of the points of the wall at positions x, (n_edges, n_points)."""
+        """Radii (n_edges, n_points) of the points of the wall at positions x (n_nodes, 2)."""
         return self._solid.contact.positions(x)[0]
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """Solve for the state at `height` from the extrapolated path; the path is not changed."""
+        """State at `height`, solved from extrapolated positions, or the failure; the path is not changed."""
         solver = self._towards(height)
         kept = self._signs() if len(self.path) > 1 else None
         guess = self._extrapolate(height)
@@ -110,8 +110,8 @@ class FrictionFollower(PathFollower):
         return np.asarray(sign.ravel()[touching[np.maximum(last, 0)]].reshape(sign.shape))
 
     def _ahead(self, height: float) -> Array:
-        """Radii at which points are, or will touch. Before the contact's edge the gap opens with the square of the
-        distance, so its root closes linearly, and the wall slows down linearly to where it is held."""
+        """Radii (n_edges, n_points) at which points touch, or will on the way to `height`. Outside the contact's edge
+        the gap grows with the square of the distance; the wall slows down linearly to the point where it is held."""
         here = self.here
         assert here.state.touch is not None
         contact, touch = self._solid.contact, here.state.touch
@@ -125,22 +125,22 @@ class FrictionFollower(PathFollower):
 
 
 def approach(gap: Array, closing: Array) -> Array:
-    """Share of its present speed that a point keeps on average over a step, in which it is held once its gap is closed;
-    ``closing`` is the change of the gap at its present speed."""
+    """Share of its present speed that a point keeps on average over a step in which it is held once its ``gap`` is
+    closed; ``closing`` is the change of the gap in the step at the present speed; arrays of one shape."""
     closes = closing < 0.0
     share = np.where(closes, np.clip(-2.0 * gap / np.where(closes, closing, -1.0), 0.0, 1.0), 1.0)
     return np.asarray(_KEPT_SPEED * share)
 
 
 def _known(rest: Array, place: Array) -> Array:
-    """Places of rest of the points; their given places where they have none."""
+    """Places of rest, with ``place`` where a point has none (NaN)."""
     return np.where(np.isnan(rest), place, rest)
 
 
 def friction_plate_state(
     solver: FrictionSolver, solved: SlidingResult, before: PlateState | None, down: float = 1.0
 ) -> PlateState:
-    """Converged state with friction, its force, and the consistent tangent of the path."""
+    """Converged state with friction, its force and the path's tangent; ``before`` is None at first contact."""
     held, step, points = solved.held, solver.step, solved.held.points
     past = None if before is None else before.friction
     friction = FrictionState.after(past, step, held.state.x, points)

@@ -1,8 +1,7 @@
-"""The wall and its filling without the contact, as a system of the unknowns that the contact can reach.
+"""Linear systems of a wall and its filling, reduced to the unknowns that the contact can reach.
 
-Its banded matrix is symmetric apart from blocks of the outer wall.
-
-The leading unknowns are eliminated once, while the blocks of the trailing unknowns change.
+The banded matrix is symmetric apart from blocks of the outer wall. The leading unknowns, away from the contact, are
+eliminated once, while the blocks of the trailing unknowns change.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ from pneutouch.mechanics.solid.newton import SolverState
 
 
 class OneSidedBlocks:
-    """Places of blocks (n_edges, 2 n, 2 n) of the outer wall in LAPACK's layouts of general and of symmetric band
-    matrices, for all unknowns or for those from ``first`` on, if the blocks before are zero."""
+    """Band matrices with added blocks (n_edges, 2 n, 2 n) of the outer wall, in LAPACK's layouts of general and of
+    symmetric bands, for all unknowns or for those from ``first`` on, if the blocks before are zero."""
 
     def __init__(self, solid: SolidModel) -> None:
         self._table = table = solid.dofs[solid.mesh.outer].reshape(len(solid.mesh.outer), -1)
@@ -36,12 +35,12 @@ class OneSidedBlocks:
         self._lower_places, self._lower_number = np.unique((i - j + j * (width + 1))[self._lower], return_inverse=True)
 
     def first_unknown(self, edge: int) -> int:
-        """First unknown of an edge of the outer wall and of all edges after it, towards the axis."""
+        """Lowest unknown of an edge of the outer wall and of all edges after it, towards the axis."""
         rest = self._table[edge:]
         return int(rest[rest >= 0].min())
 
     def widened(self, band: Array) -> Array:
-        """Symmetric band in the layout of general ones, (size, 3 width + 1), with space for fill-in."""
+        """Lower band (width + 1, size) as a transposed general band (size, 3 width + 1), with space for fill-in."""
         width, n = self._width, band.shape[1]
         full = np.zeros((n, 3 * width + 1))
         full[:, 2 * width :] = band.T
@@ -50,7 +49,7 @@ class OneSidedBlocks:
         return full
 
     def solve(self, band: Array, blocks: Array, b: Array) -> Array:
-        """Solution x of (symmetric band + blocks) x = b (size, n_rhs) by LU; not finite if the matrix is singular."""
+        """Solution x of (lower band + blocks) x = b (size, n_rhs) by LU; not finite if the matrix is singular."""
         return self.solve_widened(self.widened(band), blocks, b)
 
     def solve_widened(self, wide: Array, blocks: Array, b: Array, first: int = 0) -> Array:
@@ -86,7 +85,7 @@ class OneSidedBlocks:
         return out[:, :size]
 
     def solve_definite(self, band: Array, blocks: Array, b: Array, first: int = 0) -> Array | None:
-        """Solution x of (band + symmetric blocks) x = b by Cholesky; None if the matrix is not positive definite."""
+        """Solution x of (lower band + symmetric blocks) x = b by Cholesky; None if that matrix is not definite."""
         full = band.T.copy()
         _add(
             full,
@@ -159,8 +158,8 @@ class LeadingElimination:
 
 
 class ContactSystem:
-    """System K + c g g' with a band K, the gradient g of the volume and the stiffness c of the filling; the unknowns
-    before ``first`` are eliminated once; ``load`` (size,) is the sum of all forces except those of the contact."""
+    """System K + c g g' with a lower band K, the gradient g of the volume and the stiffness c of the filling; at most
+    the unknowns before ``first`` are eliminated; ``load`` (size,) is the residual without the contact."""
 
     def __init__(self, sides: OneSidedBlocks, band: Array, state: SolverState, load: Array, first: int) -> None:
         self.sides, self.state = sides, state
@@ -184,11 +183,11 @@ class ContactSystem:
         return self._rest[:, 0]
 
     def solve(self, push: Array, blocks: Array) -> Array:
-        """Trailing unknowns under the contact's forces (size,) and blocks, by LU."""
+        """Trailing unknowns of the move that balances load and contact forces ``push`` (size,), with its blocks; LU."""
         return self._filled(self.sides.solve_widened(self._wide, blocks, self._load(push), self.first))
 
     def solve_definite(self, push: Array, blocks: Array) -> Array | None:
-        """Trailing unknowns by Cholesky, for symmetric blocks; None if the matrix is not positive definite."""
+        """`solve` by Cholesky, for symmetric blocks; None if band and blocks are not positive definite."""
         solved = self.sides.solve_definite(self.fore.rest, blocks, self._load(push), self.first)
         return None if solved is None else self._filled(solved)
 
@@ -201,7 +200,8 @@ class ContactSystem:
         return np.asarray(out[:-1, :-1] - gas * np.multiply.outer(out[:-1, -1], out[-1, :-1]))
 
     def definite(self, blocks: Array) -> bool:
-        """True if K with symmetric blocks is positive definite; False also if that is unknown."""
+        """True if K with symmetric blocks is positive definite, and so the whole system; the filling can still make the
+        system definite if not."""
         # Leading unknowns were eliminated only where their own part is definite.
         return self.sides.solve_definite(self.fore.rest, blocks, self._rest, self.first) is not None
 
@@ -214,7 +214,7 @@ class ContactSystem:
         return np.asarray(plain - soft * (self._share * float(g @ plain) / (1.0 + self._share * float(g @ soft))))
 
     def whole(self, trailing: Array) -> Array:
-        """All unknowns (size,) from the trailing ones."""
+        """All unknowns (size,) of a move from its trailing ones."""
         first = self.first
         if not first:
             return trailing

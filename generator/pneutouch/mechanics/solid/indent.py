@@ -1,4 +1,4 @@
-"""Study 2: a plate or another rigid object presses an inflated dome with a fixed amount of gas."""
+"""Press by the solid: a plate or another rigid object presses an inflated dome with a fixed amount of gas."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ class PressSettings:
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
     break_strain: largest principal strain (stretch - 1) that the material bears.
     waves: greatest number of waves around the axis for which the path's stability is checked (`sway`); 0: no check.
-    plate_rim:   radius of curvature of the plate's rim; None: a thirtieth of the plate's radius.
-    body:        the object in mm that replaces the plate (its height is ignored).
-    friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
+    plate_rim:   radius of curvature of the plate's rim, mm; None: a thirtieth of the plate's radius.
+    body: the object in mm that replaces the plate (its height is ignored); None: the plate. friction: Coulomb's
+      coefficient between wall and plate or object; inf for a surface that grips.
     """
 
     depth: float
@@ -115,9 +115,9 @@ class PressState:
 
 @dataclass(frozen=True)
 class IndentationPath:
-    """States at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
+    """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, including those between the steps and at located events.
+    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached.
     """
 
     states: list[PressState]
@@ -126,11 +126,11 @@ class IndentationPath:
     complete: bool
 
     def column(self, name: str) -> Array:
-        """One field of every state, (n_states,)."""
+        """The field ``name`` of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
 
     def figures(self) -> Figures[float] | None:
-        """Figures of the curve before the first event that breaks it; None if too few states are left."""
+        """Figures of the states before the first event of `BREAKS_CURVE`; None if these give no straight line."""
         ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
         keep = self.column("indentation") < min(ends, default=np.inf)
         indentation, force, rise = (self.column(name)[keep] for name in ("indentation", "force", "rise"))
@@ -140,10 +140,10 @@ class IndentationPath:
 def indent(
     solid: SolidModel, free: FreeState, press: PressSettings, probe: StrainProbe | None = None
 ) -> IndentationPath:
-    """Shut in the gas at a free state and lower the plate; many presses of one solid share its ``probe``.
+    """Shut in the gas at a free state and lower the plate; presses of one solid can share a ``probe``, None: a new one.
 
-    Returns every state found and typed events; `complete` is False if an event ended the path before the depth. Raises
-    NoConvergenceError only if there is no equilibrium even at first contact.
+    `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
+    there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
     """
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
     follower, length, plate = follower_of(solid, free, press, touch), solid.length, touch.body
@@ -165,7 +165,7 @@ def indent(
 
 
 def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch) -> PathFollower:
-    """Path follower of a press at first contact, with the gas shut in."""
+    """Path follower of a press, at the first contact ``touch``, with the gas shut in."""
     gas = shut_in(solid, free, press)
     if press.friction:
         # Most presses have no friction: its modules are loaded only here.
@@ -176,7 +176,7 @@ def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch:
 
 
 def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
-    """Gas of a free state with its amount fixed. Raises UnreachableLoadError below absolute vacuum."""
+    """Gas of a free state with its amount fixed, nondimensional. Raises UnreachableLoadError below absolute vacuum."""
     length, mu = solid.length, solid.mu
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
@@ -191,7 +191,7 @@ def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
 def _finish(
     states: list[PressState], events: list[SolidEvent], jump: PathJump | None, recorder: _Recorder, press: PressSettings
 ) -> IndentationPath:
-    """Path with the states at the steps of the protocol, and with the event that ended it."""
+    """Path with the states at the plate steps and, if a jump ended it, with the event of this jump."""
     if jump is not None:
         events = [*events, SolidEvent(jump.kind, recorder.indentation(jump.height), jump.why)]
     step = press.depth / press.steps
@@ -200,7 +200,7 @@ def _finish(
 
 
 class _Recorder:
-    """Converts solver states to states with dimensions and compares consecutive ones for events."""
+    """Converts the solver's states to mm, N and MPa, and finds the events between consecutive ones."""
 
     def __init__(self, solid: SolidModel, free: FreeState, touch: FirstTouch, probe: StrainProbe) -> None:
         self._solid, self._free, self._probe = solid, free, probe
@@ -210,11 +210,11 @@ class _Recorder:
         self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
 
     def indentation(self, height: float) -> float:
-        """Plate travel in mm at a nondimensional height."""
+        """Plate travel (mm) since first contact at a nondimensional height."""
         return (self._plate.height - height) * self._solid.length
 
     def state(self, plate_state: PlateState) -> PressState:
-        """Reported figures of one converged state."""
+        """A converged state of the solver in mm, N and MPa."""
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu
@@ -247,7 +247,7 @@ class _Recorder:
         )
 
     def events(self, a: PressState, b: PressState, press: PressSettings) -> list[SolidEvent]:
-        """Events whose levels are crossed between two consecutive states."""
+        """Events whose levels are crossed between the consecutive states a and b."""
         wall = self._solid.mesh.wall
         inner, outer = (edge * self._solid.length for edge in self._plate.span)
         levels = {
@@ -269,8 +269,7 @@ class _Recorder:
         return [SolidEvent(kind, where, detail[kind]) for kind, where in places.items() if where is not None]
 
     def losses(self, path: list[PlateState], waves: int) -> list[SolidEvent]:
-        """Events in which the axisymmetric path loses stability to displacements of up to ``waves`` waves around the
-        axis."""
+        """Events at which the axisymmetric path loses its stability to 1 to ``waves`` waves around the axis."""
         lost = axisymmetry_losses(self._solid, path, waves) if waves else []
         kinds = ["sway" if loss.waves == 1 else "lobes" for loss in lost]
         return [
@@ -280,7 +279,7 @@ class _Recorder:
 
 
 def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:
-    """Quantities of one state whose levels define events."""
+    """Quantities of one state whose levels define events, by kind of event; ``edge`` is that of the object's edge."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
         "gauge_range": PathPoint(s.indentation, s.pressure, rate),

@@ -1,6 +1,6 @@
-"""Rigid axisymmetric objects other than the plate: undersides of arcs and lines with a continuous slope.
+"""Rigid objects other than the plate, with undersides of arcs and lines of continuous slope.
 
-Loaded for a sensor that such an object presses.
+Most are bodies of revolution; a cylinder and an edge lie across the dome. Imported only if such an object presses.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ class UndersidePiece(NamedTuple):
     radius: float = 0.0
 
     def scaled(self, factor: float) -> UndersidePiece:
-        """The piece with all lengths times a factor."""
+        """The piece with all lengths multiplied by ``factor``."""
         start, r, z, radius = (factor * x for x in (self.start, self.r, self.z, self.radius))
         return UndersidePiece(start, r, z, self.slope, self.curve / factor, radius)
 
 
 class ProfileVertex(NamedTuple):
-    """A corner of a meridian at (r, z), rounded to ``radius``."""
+    """A corner of a profile at (r, z), rounded to ``radius``; mm."""
 
     r: float
     z: float
@@ -57,7 +57,7 @@ class ProfileVertex(NamedTuple):
 
 
 class ObjectShapeError(ValueError):
-    """Error for a meridian that cannot be an underside; ``index`` is the vertex at fault."""
+    """Error for a profile that cannot be an underside; ``index`` is the vertex at fault."""
 
     def __init__(self, problem: str, index: int) -> None:
         super().__init__(problem)
@@ -66,7 +66,7 @@ class ObjectShapeError(ValueError):
 
 @dataclass(frozen=True)
 class RigidObject:
-    """A rigid body of revolution with its lowest point at ``height``.
+    """A rigid body of revolution, or a straight one if ``lying``, with its lowest point at ``height``.
 
     label:  name of the object in words.
     pieces: the underside from the axis outwards, with its lowest point at 0; the slope is continuous.
@@ -90,7 +90,7 @@ class RigidObject:
         return np.array(self.pieces).T
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the underside at r and its first two derivatives; all shaped like r."""
+        """Height of the underside at radii r and its first two derivatives; all shaped like r."""
         table = self._table
         index = np.maximum(np.searchsorted(table[0], r, side="right") - 1, 0)
         _, at, z, slope, curve, radius = table[:, index]
@@ -105,7 +105,7 @@ class RigidObject:
         return self.height + height, first, second
 
     def outline(self, reach: float, count: int = 181) -> Array:
-        """Section for drawing, r from 0 to ``reach``, (n, 2): a full circle for a round section, else the underside."""
+        """Section (n, 2) at r >= 0 for drawing: a round section whole, edge and side of a bar, else the underside."""
         if self.flanks:
             angle = np.linspace(-0.5, 0.0, count) * np.pi
             r, z = self.smallest * np.cos(angle), self.smallest * (1.0 + np.sin(angle))
@@ -119,11 +119,11 @@ class RigidObject:
         return np.stack([r, self.underside(r)[0]], axis=1)
 
     def at(self, height: float) -> RigidObject:
-        """This body at another height."""
+        """The body with its lowest point at another height."""
         return replace(self, height=height)
 
     def scaled(self, factor: float) -> RigidObject:
-        """The body with all lengths times a factor."""
+        """The body with all lengths multiplied by ``factor``."""
         return replace(
             self,
             pieces=tuple(piece.scaled(factor) for piece in self.pieces),
@@ -136,18 +136,18 @@ class RigidObject:
 
 
 def ball(radius: float) -> RigidObject:
-    """A ball of a radius (mm): an arc to 60 degrees from its lowest point."""
+    """A ball of ``radius`` (mm): an arc from its lowest point to the flank of 60 degrees, a parabola beyond."""
     body = _body("ball", [_arc(0.0, radius, 0.0)], None, _end(0.0, radius, STEEPEST), radius)
     return replace(body, circle=(0.0, radius))
 
 
 def cylinder(radius: float) -> RigidObject:
-    """A lying cylinder of a radius (mm), endless across the plane of symmetry; its section is that of a ball."""
+    """A lying cylinder of ``radius`` (mm), endless across the plane of symmetry; its section is that of a ball."""
     return replace(ball(radius), label="cylinder", lying=True)
 
 
 def edge(radius: float) -> RigidObject:
-    """An endless bar with vertical sides and a half-round edge of a radius (mm): a cylinder up to 60 degrees."""
+    """An endless bar with vertical sides and a half-round edge of ``radius`` (mm): below, a cylinder to 60 degrees."""
     return replace(cylinder(radius), label="edge", flanks=_FLANKS * radius)
 
 
@@ -159,7 +159,7 @@ def cone(half_angle: float, tip: float) -> RigidObject:
 
 
 def ring(radius: float, section: float) -> RigidObject:
-    """A ring: a wire of the radius ``section`` bent to a circle of ``radius`` (mm), up to 60 degrees on both sides."""
+    """A ring, a wire of radius ``section`` bent to a circle of ``radius`` (mm): flanks to 60 degrees on both sides."""
     inner, outer = _end(radius, section, -STEEPEST), _end(radius, section, STEEPEST)
     body = _body("ring", [_arc(radius, section, inner.start)], inner, outer, section)
     return replace(body, circle=(radius, section))
@@ -169,7 +169,7 @@ def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
     """A body whose underside is the line through corners (r, z), each rounded to its radius (mm).
 
     The first corner may lie on the axis. The ends turn up with their own radii. Raises ObjectShapeError for a sharp
-    corner, an arc that does not fit, and lines that go back inwards or are steeper than `STEEPEST`.
+    corner, an arc that does not fit, and lines that go back inwards, down at an end, or are steeper than `STEEPEST`.
     """
     slopes = _slopes(vertices)
     first, last, on_axis = vertices[0], vertices[-1], vertices[0].r == 0.0
@@ -202,7 +202,7 @@ _MAKE: dict[str, Callable[[dict[str, Any]], RigidObject]] = {
 
 
 def object_of(contact: ContactTable) -> RigidObject:
-    """The object of a contact other than a plate. Raises ObjectShapeError for a profile that is no underside."""
+    """The object that a design's contact table describes, other than a plate. Raises ObjectShapeError as `profile`."""
     return _MAKE[contact.object](contact.sizes())
 
 
@@ -220,7 +220,7 @@ def _body(
     outer: UndersidePiece | None,
     smallest: float,
 ) -> RigidObject:
-    """Object from its own pieces and the parabolas beyond them, shifted so that its lowest point is at 0."""
+    """Object from its own pieces and the parabolas beyond them (None: no edge), shifted to its lowest point at 0."""
     inward = [] if inner is None else [inner._replace(start=0.0)]
     outward = [] if outer is None else [outer]
     span = (0.0 if inner is None else inner.r, np.inf if outer is None else outer.r)
@@ -231,18 +231,18 @@ def _body(
 
 
 def _arc(r: float, radius: float, start: float) -> UndersidePiece:
-    """Arc about (r, radius), whose lowest point is at height 0."""
+    """Arc about the centre (r, radius), whose lowest point is at height 0, from the radius ``start`` outwards."""
     return UndersidePiece(start, r, radius, radius=radius)
 
 
 def _on_arc(r: float, radius: float, slope: float) -> tuple[float, float]:
-    """Point (r, z) of `_arc` that has a given slope."""
+    """Point (r, z) of `_arc` at which it has a given slope."""
     lean = np.hypot(1.0, slope)
     return float(r + radius * slope / lean), float(radius - radius / lean)
 
 
 def _end(r: float, radius: float, slope: float) -> UndersidePiece:
-    """Parabola at the end of `_arc`, which turns up from the point with a given slope."""
+    """Parabola that continues `_arc` from the point with a given slope on, and turns up."""
     return _turned_up(*_on_arc(r, radius, slope), slope, radius)
 
 

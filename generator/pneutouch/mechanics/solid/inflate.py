@@ -1,4 +1,4 @@
-"""Study 1: free inflation by volume, through and beyond the limit point, and the state at a driving pressure.
+"""Free inflation of the solid by volume, through and beyond the limit point, and its state at a driving pressure.
 
 Also the first contact of a plate or another rigid object with an inflated dome.
 """
@@ -38,10 +38,10 @@ _MAX_STATES = 400
 
 @dataclass(frozen=True)
 class FreeState:
-    """An inflated state without contact.
+    """An inflated state without contact. positions: (n_nodes, 2), mm. pressure: gauge, MPa. volume: cavity, mm^3.
 
-    positions: (n_nodes, 2) in mm.  pressure: gauge, MPa.  volume: cavity, mm^3.  stiffness: dp/dV, MPa/mm^3 (zero at
-    the limit point).  stable: True if stable under a regulated pressure.  inner_apex, outer_apex: heights in mm.
+    stiffness: dp/dV, MPa/mm^3 (zero at the limit point). stable: True if stable under a regulated pressure. inner_apex,
+    outer_apex: heights, mm. unit: the solver's state; by_volume: dx/dV (n_nodes, 2); both nondimensional.
     """
 
     positions: Array
@@ -57,7 +57,8 @@ class FreeState:
 
 @dataclass(frozen=True)
 class Inflation:
-    """States in order of volume, and the limit point if the path reached one (the largest pressure)."""
+    """States in order of volume, and the ``limit``: the state of largest pressure or, if the wall buckles before, the
+    last stable one; None if neither was reached."""
 
     states: list[FreeState]
     limit: FreeState | None
@@ -75,7 +76,7 @@ class Inflation:
 
 
 def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> FreeState:
-    """Dimensional record of a converged state, with the slope dp/dV = 1/(g' K^-1 g) and the stability of K."""
+    """Record of a converged state, with dp/dV = 1/(g' K^-1 g) and the stability of K: K stiffness, g gradient of V."""
     state = outcome.state
     tangent = stability(scene, state)
     compliance = float(state.by_volume @ tangent.soft)
@@ -98,7 +99,7 @@ def _scene(solid: SolidModel, target: float) -> SolidScene:
 
 
 def rest_state(solid: SolidModel) -> FreeState:
-    """The unloaded dome, with its initial slope dp/dV."""
+    """The unloaded dome, with its initial slope dp/dV. Raises NoConvergenceError."""
     scene = _scene(solid, solid.cavity.volume(solid.rest))
     outcome = minimise(scene, solid.rest)
     if isinstance(outcome, NewtonFailure):
@@ -107,7 +108,7 @@ def rest_state(solid: SolidModel) -> FreeState:
 
 
 def _guess(solid: SolidModel, path: list[FreeState], volume: float) -> Array:
-    """Guess of the positions at a volume: tangent of the last state, or Hermite cubic through the last two."""
+    """Positions extrapolated to a volume (R0^3), by the last state's tangent or the last two's Hermite cubic."""
     last = path[-1].unit
     ahead = volume - last.volume
     if len(path) < 2:
@@ -116,7 +117,7 @@ def _guess(solid: SolidModel, path: list[FreeState], volume: float) -> Array:
 
 
 def between(a: FreeState, b: FreeState, volume: float) -> Array:
-    """Positions at a volume by the Hermite cubic in V through positions and dx/dV of two states; may extrapolate."""
+    """Positions at a volume (R0^3) by the Hermite cubic in V through x and dx/dV of two states; may extrapolate."""
     span = b.unit.volume - a.unit.volume
     s = (volume - a.unit.volume) / span
     bend = b.unit.x - a.unit.x
@@ -125,7 +126,7 @@ def between(a: FreeState, b: FreeState, volume: float) -> Array:
 
 
 def pressure_between(a: FreeState, b: FreeState, share: float) -> float:
-    """Pressure (MPa) on the Hermite cubic p(V) of two states; share 0 at a, 1 at b."""
+    """Pressure (MPa) on the Hermite cubic p(V) of two states; ``share`` of the volume between them: 0 at a, 1 at b."""
     span = b.volume - a.volume
     rise, first, last = b.pressure - a.pressure, a.stiffness * span, b.stiffness * span
     bow = (1.0 - share) * (first - rise) + share * (rise - last)
@@ -135,7 +136,7 @@ def pressure_between(a: FreeState, b: FreeState, share: float) -> float:
 def at_volume(
     solid: SolidModel, path: list[FreeState], volume: float, guess: Array | None = None
 ) -> FreeState | NewtonFailure:
-    """State at a nondimensional volume, continued from the end of a path, or the failure."""
+    """State at a volume (R0^3), or the failure; ``guess``: positions (n_nodes, 2), None: extrapolated from ``path``."""
     last = path[-1]
     slope = last.stiffness * solid.length**3 / solid.mu
     pressure = last.unit.filling.pressure + slope * (volume - last.unit.volume)
@@ -149,10 +150,9 @@ def inflate(
 ) -> Inflation:
     """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
 
-    to_pressure: stop once this gauge pressure (MPa) is bracketed; None continues to the limit point. past_limit:
-    continue to this multiple of the limit volume.  largest: multiple of V0 at which the search for a limit ends. Raises
-    NoConvergenceError if the volume steps become too small.
-    """
+    to_pressure: stop once this gauge pressure (MPa) or the limit point is reached; None: go on to ``past_limit`` times
+    the limit point's volume. largest: multiple of the unloaded volume at which the path ends in any case. Raises
+    NoConvergenceError if the volume steps become too small before a limit point."""
     path = [rest_state(solid)]
     rest = path[0].unit.volume
     sign = -1.0 if to_pressure is not None and to_pressure < 0.0 else 1.0
@@ -183,7 +183,7 @@ def inflate(
 def _ended(
     path: list[FreeState], limit: FreeState | None, goal: float | None, past: float, largest: float
 ) -> str | None:
-    """Reason why a volume path is finished, or None."""
+    """Reason why a volume path is finished, empty at or beyond its limit point as wanted; None: it goes on."""
     last = path[-1]
     if goal is not None and abs(last.pressure) >= abs(goal) and len(path) > 1:
         return "the driving pressure came first"
@@ -195,7 +195,7 @@ def _ended(
 
 
 def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance: float = 1.0e-7) -> FreeState:
-    """State with dp/dV = 0 between two states with slopes of opposite sign; volume to a relative `tolerance`."""
+    """State with dp/dV = 0 between two states with slopes of opposite sign; volume to a relative ``tolerance``."""
     middle = before
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
@@ -208,7 +208,7 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
 
 
 def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: float) -> FreeState:
-    """State at a volume between two states, or closer to the first if that fails to converge."""
+    """State at a volume (R0^3) between two states, or nearer to ``before`` if that does not converge."""
     start, share = before.unit.volume, 1.0
     while True:
         at = start + share * (volume - start)
@@ -221,7 +221,7 @@ def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: flo
 
 
 def _slope_root(before: FreeState, after: FreeState) -> float:
-    """Volume at which the Hermite cubic p(V) of two states has its maximum; nondimensional."""
+    """Volume (R0^3) at which the Hermite cubic p(V) through two states has its maximum."""
     a, b = before.unit.volume, after.unit.volume
     scale = after.volume - before.volume
     rise, first, last = after.pressure - before.pressure, before.stiffness * scale, after.stiffness * scale
@@ -232,9 +232,9 @@ def _slope_root(before: FreeState, after: FreeState) -> float:
 
 
 def state_at(solid: SolidModel, pressure: float, inflation: Inflation | None = None) -> FreeState:
-    """The first state at a driving pressure (gauge, MPa) on the rising branch; a given inflation is reused.
+    """The first state at a driving pressure (gauge, MPa) on the rising branch; ``inflation`` is reused, if given.
 
-    Raises UnreachableLoadError at or above the limit point.
+    Raises UnreachableLoadError at or beyond the limit point, or where the inflation ends before.
     """
     if pressure == 0.0:
         return inflation.states[0] if inflation else rest_state(solid)
@@ -251,7 +251,7 @@ def state_at(solid: SolidModel, pressure: float, inflation: Inflation | None = N
 
 
 def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> FreeState:
-    """State at a regulated pressure by Newton's method, from the Hermite cubic between two states around it."""
+    """State at a regulated pressure (MPa) by Newton's method, from the Hermite cubic between two states around it."""
     share = np.linspace(0.0, 1.0, 201)
     curve = np.array([pressure_between(a, b, float(s)) for s in share])
     up = 1.0 if b.pressure > a.pressure else -1.0
@@ -267,7 +267,7 @@ def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> 
 
 
 class FirstTouch(NamedTuple):
-    """An object at its first contact with the free dome, and the radius of that contact, in R0; 0 for a plate."""
+    """An object at its first contact with the free dome, and the ``radius`` of that contact, 0 for a plate; in R0."""
 
     body: Indenter
     radius: float = 0.0
@@ -280,7 +280,7 @@ def first_touch(
     plate_diameter: float | None,
     plate_rim: float | None = None,
 ) -> FirstTouch:
-    """First contact of a body, or of a plate if None, with a free state; lengths in mm, see `indent.PressSettings`."""
+    """First contact of ``body`` (None: a plate) with a free state; lengths in mm as in `indent.PressSettings`."""
     length, longest = solid.length, np.array(solid.contact.longest)
     if body is None:
         radius = np.array(np.inf if plate_diameter is None else 0.5 * plate_diameter / length)

@@ -18,7 +18,7 @@ _TO_BENDING_LENGTH = 3.0
 _ARC_CELLS = (24, 48)
 
 START, END, MIDDLE = range(3)
-"""Nodes of an edge, in their order; a linear edge has no middle."""
+"""Columns of a table of edges: an edge's nodes, in their order; a linear edge has no middle."""
 
 CELLS_PER_RADIUS = 4
 """Cells of the outer wall over a length equal to the least radius of an object. With fewer the wall appears to leave a
@@ -27,17 +27,17 @@ ball at its lowest point; with these the force is within 1 % of a refined mesh (
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """A meridian section of the wall, in mm; quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
+    """Mesh of a meridian section of the wall, in mm: quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
 
     nodes:   (n_nodes, 2), columns r and z.
     cells:   (n_cells, 4 | 8 | 9): corners counter-clockwise in (xi, eta), then the mid-sides of eta=-1, xi=+1, eta=+1,
       xi=-1, then the centre.
-    inner, outer: (n_edges, 2 | 3) edges of the wetted wall and of the wall that the plate can meet: start, end, (mid);
+    inner, outer: (n_edges, 2 | 3) edges of the wall's face to the cavity and of its outer face: start, end, (middle);
       both run from the base to the apex, which is the end of the last edge.
     clamped: nodes with both displacements zero.
     axis:    nodes on r = 0, whose radial displacement is zero.
     sliding: nodes with only the vertical displacement zero (a symmetry plane).
-    length, wall: scale of the shape and wall thickness, the scales of lengths and of contact.
+    length, wall: units of length of the solver (`DomeShape.scale`) and of the contact's stiffness (wall thickness).
     flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; empty without one.
     """
 
@@ -54,12 +54,12 @@ class SolidMesh:
 
     @property
     def inner_apex(self) -> int:
-        """Node of the wetted wall on the axis."""
+        """Number of the inner face's node on the axis."""
         return int(self.inner[-1, END])
 
     @property
     def outer_apex(self) -> int:
-        """Node of the outer wall on the axis."""
+        """Number of the outer face's node on the axis."""
         return int(self.outer[-1, END])
 
     def __post_init__(self) -> None:
@@ -75,7 +75,7 @@ class SolidMesh:
 
 
 def grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
-    """Cells over a grid of (2 n_columns + 1) x (2 n_rows + 1) points, numbered down each column first; (n_cells, 9)."""
+    """Cells (n_cells, nodes_per_cell) over (2 n_columns + 1) x (2 n_rows + 1) points, numbered column by column."""
     height = 2 * n_rows + 1
     corner = (2 * np.arange(n_columns)[:, None] * height + 2 * np.arange(n_rows)[None, :]).reshape(-1, 1)
     right, up = 2 * height, 2
@@ -85,13 +85,13 @@ def grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
 
 
 def boundary(n_columns: int, height: int, row: int) -> Index:
-    """Edges (start, end, mid) along one row of grid points, in column order; (n_columns, 3)."""
+    """Edges (start, end, middle) along one row of a grid with ``height`` rows, in column order; (n_columns, 3)."""
     start = 2 * np.arange(n_columns) * height + row
     return np.stack([start, start + 2 * height, start + height], axis=1).astype(np.intp)
 
 
 def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tuple[float, float]) -> SolidMesh:
-    """Mesh of a grid of points (2 n_columns + 1, 2 n_rows + 1, 2), first column clamped, last column on the axis."""
+    """Mesh over a grid of points (2 n_columns + 1, 2 n_rows + 1, 2), first column clamped, last column on the axis."""
     height = 2 * n_rows + 1
     nodes = grid.reshape(-1, 2).copy()
     base = np.arange(height)
@@ -112,20 +112,20 @@ def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tup
 
 
 def graded(n: int, ratio: float) -> Array:
-    """Points over [0, 1] (n + 1,) in geometric progression; the first interval is `ratio` times the last."""
+    """Points (n + 1,) from 0 to 1 with intervals in geometric progression; the first is `ratio` times the last."""
     steps = np.geomspace(ratio, 1.0, n) if n > 1 else np.ones(1)
     return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
 
 
 def with_middles(points: Array) -> Array:
-    """Points with the middle of every interval inserted; (n,) to (2 n - 1,)."""
+    """Points (2 n - 1,): the given ones (n,) and the middles of the intervals between them."""
     out = np.empty(2 * points.size - 1)
     out[::2], out[1::2] = points, 0.5 * (points[1:] + points[:-1])
     return out
 
 
 def arc_cells(arc: float, wall_ratio: Array) -> Array:
-    """Number of cells along an arc that keeps S within half a per cent: three per bending length, 24 to 48.
+    """Number of cells along an arc that keeps the sensitivity within 0.5 %: three per bending length, 24 to 48.
 
     ``arc`` is the length of the inner face and ``wall_ratio`` (of any shape) the wall thickness, both over the scale of
     the dome; the bending length is the square root of the ratio.
@@ -134,14 +134,14 @@ def arc_cells(arc: float, wall_ratio: Array) -> Array:
 
 
 def cell_counts(shape: DomeShape, arc: int | None, through: int | None) -> tuple[int, int]:
-    """Numbers of cells along the arc and across the wall: as requested, else the default of a shape."""
+    """Numbers of cells along the arc and across the wall: as given, else (None) the default for the shape."""
     ratio = shape.wall_thickness / shape.scale
     along = int(arc_cells(shape.arcs[0] / shape.scale, np.array(ratio)))
     return arc or along, through or cells_across(ratio)
 
 
 def cells_across(wall_ratio: float) -> int:
-    """Number of cells across a wall of a given ratio to the shape's scale: one to 0.055, else two."""
+    """Number of cells across a wall: one if its thickness over the shape's scale is at most 0.055, else two."""
     return 1 if wall_ratio <= _THIN else 2
 
 
@@ -155,10 +155,10 @@ def dome(
 ) -> SolidMesh:
     """Mesh of the wall of a shape on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
 
-    Nodes lie on both faces of the shape and, between them, on the straight lines from face to face. arc None uses
-    `arc_cells`; through None uses one cell for walls to 0.055 of the scale, else two.  order: 2 for nine-node, 8 for
-    eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base. slides: the base face moves
-    freely in r (a symmetry plane), for tests against the sphere.
+    Nodes lie on both faces of the shape and, between them, on the straight lines from face to face. None: the default
+    number of cells (`cell_counts`). order: 2 for nine-node, 8 for eight-node, 1 for four-node cells. base_ratio < 1
+    makes cells shorter towards the base. slides: the base face moves freely in r (a symmetry plane), for tests against
+    the sphere. Raises ValueError for sizes that are not positive.
     """
     size = shape.inner_radius, shape.wall_thickness
     if not (np.isfinite(size).all() and min(size) > 0.0):
@@ -172,17 +172,17 @@ def dome(
 
 
 def nodes_along(edges: Index) -> Index:
-    """Nodes of a face from end to end, (n_nodes,), from its edges (n_edges, 2 | 3)."""
+    """Node numbers (n_nodes,) of a face from end to end, from its edges (n_edges, 2 | 3)."""
     inward = edges[:, [START, MIDDLE]] if edges.shape[1] > MIDDLE else edges[:, [START]]
     return np.append(inward.ravel(), edges[-1, END])
 
 
 MOST_CELLS = 192
-"""Greatest number of cells along the arc to resolve an object; with more, a prediction takes minutes."""
+"""Greatest number of cells along the arc for an object: with more, a prediction takes minutes."""
 
 
 def object_cells(sensor: Sensor) -> int | None:
-    """Number of cells along the arc that resolves the pressing object; None if the default is enough."""
+    """Number of cells along the arc that resolves the pressing object; None if the default is enough or for a plate."""
     if sensor.protocol.body is None:
         return None
     shape, smallest = sensor.dome.shape, sensor.protocol.body.smallest

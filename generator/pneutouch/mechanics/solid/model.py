@@ -1,4 +1,4 @@
-"""The discrete body: energy, forces and stiffness of a wall, with lengths in R0 and stresses in mu."""
+"""The finite elements of a wall: energy, forces and stiffness, with lengths in R0 and stresses in mu."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ CONTACT_STIFFNESS = 3.0e4
 
 @dataclass(frozen=True)
 class PointFields:
-    """Fields at the integration points at one set of positions.
+    """Fields at the integration points for one set of nodal positions.
 
-    energy:   stored energy / (mu R0^3); inf if a point is inverted.
+    energy:   stored energy / (mu R0^3); inf if a point is inverted, and then no other field holds.
     strains:  (n_points, 5), see `elements`.
     jets:     (10, n_points) weighted energy derivatives, see `Jet`; the averaged pressure is included.
     basis:    (n_points, 3, 5) derivatives of (a, j, h) by the strains.
@@ -62,11 +62,11 @@ class PointFields:
 
 
 class SolidModel:
-    """A wall on one mesh with one law, whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in
-    units of the mesh's ``length``, the scale of its shape.
+    """A wall on one mesh with one law, whose modulus may vary along the arc. Positions are arrays (n_nodes, 2) in units
+    of the mesh's ``length``, n_nodes of the mesh; in the shapes of blocks of cells it is the nodes of a cell.
 
-    ``grade`` returns the modulus over that of the material at reference points (r, z), in the same unit, arrays of one
-    shape.  ``base`` supports both faces of the wall; with None they pass through.
+    ``grade`` returns the modulus over that of the material at rest points (r, z), in the same unit, arrays of one
+    shape; None: 1. ``base`` supports both faces of the wall, in mm; None: they pass through.
     """
 
     def __init__(
@@ -116,8 +116,8 @@ class SolidModel:
     def _patterns(
         self, width: int = 0, folding: Index | None = None, forms: Mapping[int, BlockEntries] = MappingProxyType({})
     ) -> None:
-        """Assembly patterns of the cells with the edges of the inner wall, and of the faces; ``folding`` are the
-        unknowns coupled by the contact with a flange."""
+        """Assembly patterns of the cells with the edges of the inner wall, and of the faces; ``folding``: table of the
+        unknowns coupled by the contact with a flange; ``forms`` as in `AssemblyPattern`."""
         mesh = self.mesh
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
         self.pattern = AssemblyPattern(tables[:2], self.size, width, forms)
@@ -128,7 +128,7 @@ class SolidModel:
         self.faces = FaceSums(inner, outer, fold)
 
     def _base_faces(self, base: RigidBase) -> tuple[BaseFace, BaseFace]:
-        """Contact of the outer and the inner face with a base."""
+        """Contact of the outer face and of the inner face with a base (mm)."""
         flange, opening, *ring = (x / self.length for x in (base.flange, base.opening, base.ring, base.ring_height))
         outer = BaseFace(self.mesh.outer, self.rest, self.contact, flange, (ring[0], ring[1]))
         return outer, BaseFace(self.mesh.inner, self.rest, self.contact, opening)
@@ -138,7 +138,7 @@ class SolidModel:
         return sum((part.load(x) for part in self.supports), BaseLoad())
 
     def _integration(self) -> None:
-        """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""
+        """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`), and weighted volume modes."""
         points, weights = gauss_square(self.scheme.gauss)
         b, measure, position = strain_operator(self.rest, self.mesh.cells, points)
         self._weight = measure * weights
@@ -155,13 +155,13 @@ class SolidModel:
         self._kappa = (self.material.bulk_ratio * mean)[:, None, None]
 
     def expand(self, step: Array) -> Array:
-        """Nodal displacement (n_nodes, 2) from a vector of free unknowns (size,)."""
+        """Nodal displacement (n_nodes, 2) from the free unknowns (size,); 0 where fixed."""
         out = np.zeros(self.rest.size)
         out[self._order] = step
         return out.reshape(-1, 2)
 
     def local(self, x: Array) -> PointFields:
-        """Strains, energy and energy derivatives at the integration points for positions x."""
+        """Strains, energy and energy derivatives at the integration points for positions x (n_nodes, 2)."""
         n_cells, n_points = self._weight.shape
         gathered = x[self.mesh.cells].reshape(n_cells, -1, 1)
         f = np.matmul(self._tall, gathered).reshape(-1, 5)
@@ -224,14 +224,14 @@ def _even(radius: Array, height: Array) -> Array:
 
 
 def _half_width(table: Index) -> int:
-    """Greatest distance between two unknowns of one row, where -1 stands for a fixed one."""
+    """Greatest difference between two unknowns' numbers in one row of a table; -1 (fixed) does not count."""
     if not table.size:
         return 0
     return int((table.max(axis=1) - np.where(table < 0, table.max(), table).min(axis=1)).max())
 
 
 def _number_dofs(mesh: SolidMesh, meeting: Index) -> Index:
-    """Number of the unknown per node and direction (n_nodes, 2), -1 if fixed; reordered if that narrows the band."""
+    """Numbers (n_nodes, 2) of the unknowns by node and direction, -1 if fixed; reordered if that narrows the band."""
     n = mesh.nodes.shape[0]
     native = np.arange(n)
     # Two columns of nodes span a cell of a dome numbered down each column: no order is narrower.
@@ -249,7 +249,7 @@ def _number_dofs(mesh: SolidMesh, meeting: Index) -> Index:
 
 
 def _narrower(groups: list[Index], n: int) -> Index:
-    """Ranks of n nodes by reverse Cuthill-McKee if that narrows the span of coupled nodes, else their own order."""
+    """Ranks of n nodes by reverse Cuthill-McKee if that narrows the span of node ``groups``, else their own order."""
     # Only a flange needs these, which take a tenth of SciPy's import.
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee

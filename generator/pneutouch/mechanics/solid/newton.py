@@ -2,7 +2,7 @@
 
 The line search also serves Newton's method with friction.
 
-Failures of a solve are handled by callers; users see a ComputationError.
+A solve that fails returns a `NewtonFailure`; its callers try again or raise the ComputationErrors defined here.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ State = TypeVar("State", bound=_Balanced)
 def line_search(
     trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
 ) -> State | None:
-    """Backtrack from the full step until the energy satisfies Armijo's condition; None if it never does.
+    """Backtrack from the full step until the energy satisfies Armijo's condition; returns the state, None if it never
+    does.
 
-    trial: for a share of the step, the change of the energy and a function that returns the state, or None without
-    state. slope: derivative of the energy along the step (size,), negative. Near convergence the change is below the
-    rounding error ``noise``: there a step that lowers the slope is accepted, too.
-    """
+    trial(share): change of the energy at a share of the step and a function that returns the state there; None if that
+    state is impossible. slope: derivative of the energy along ``step`` (size,), negative. Where the change is below the
+    rounding error ``noise``, near convergence, a step that lowers the slope is accepted too."""
     share = 1.0
     while share > _SHORTEST:
         tried = trial(share)
@@ -89,10 +89,10 @@ class SolidScene:
 
 @dataclass(frozen=True)
 class SolverState:
-    """Positions x (n_nodes, 2) with all quantities evaluated there.
+    """Positions x (n_nodes, 2) with all quantities evaluated there; nondimensional.
 
     residual: gradient of the total energy (size,); inner: its part without the plate; scale: magnitude of the balancing
-    forces; by_volume: gradient of the cavity volume (size,); terms: states of the scene's terms.
+    forces; by_volume: gradient of the cavity volume (size,); touch: None without plate; terms: those of `acting`.
     """
 
     x: Array
@@ -112,8 +112,8 @@ class SolverState:
 class NewtonDirection:
     """Solution of one tangent system K + c g g', g the gradient of the volume and c the stiffness of the filling.
 
-    step: the solution (size,); soft: K^-1 g; denominator: 1 + c g.K^-1 g; stable: the whole is positive definite;
-    wall_stable: K is, by itself; lift: amount added to the diagonal for a descent direction.
+    step: the solution (size,); soft: K^-1 g; denominator: 1 + c g'K^-1 g; stable: K + c g g' is positive definite;
+    wall_stable: K is; lift: amount added to the diagonal of K for a descent direction.
     """
 
     step: Array
@@ -134,7 +134,7 @@ class NewtonResult:
 
 @dataclass(frozen=True)
 class NewtonFailure:
-    """Newton's method did not converge: reason in words, and number of steps, if counted."""
+    """Failure of Newton's method to converge: the reason in words, and the number of steps, 0 if not counted."""
 
     why: str
     iterations: int = 0
@@ -181,7 +181,7 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
 
 
 def tangent(scene: SolidScene, state: SolverState) -> Array:
-    """Banded stiffness of wall, follower pressure and terms, without plate and the rank-one term of the filling."""
+    """Lower band of the stiffness of wall, follower pressure and terms, without plate and the filling's stiffness."""
     solid = scene.solid
     load = -state.filling.pressure * solid.cavity.hessian(state.x)
     band = solid.pattern.matrix([solid.stiffness(state.local), load])
@@ -196,13 +196,13 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
 
 
 def full_tangent(scene: SolidScene, state: SolverState) -> Array:
-    """`tangent` with the contact stiffness at the state's touching points."""
+    """`tangent` with the plate's contact stiffness at the state's touching points."""
     band = tangent(scene, state)
     return band if state.touch is None else with_contact(scene, band, state.touch, state.touch.traction > 0.0)
 
 
 def with_contact(scene: SolidScene, band: Array, touch: ContactEvaluation, active: Flags) -> Array:
-    """`tangent` with the contact stiffness at the ``active`` points."""
+    """Copy of ``band`` with the plate's contact stiffness added at the ``active`` points (n_edges, n_points)."""
     return scene.solid.faces.outer.added(band, [scene.solid.contact.hessian(touch, active)])
 
 
@@ -247,11 +247,11 @@ DirectionFinder = Callable[[SolidScene, SolverState], NewtonDirection]
 def stability(
     scene: SolidScene, state: SolverState, load: Array | None = None, band: Array | None = None
 ) -> NewtonDirection:
-    """Solve the tangent system at a converged state for `load` (size,), with negative pivots counted if there are any.
+    """Step -(K + c g g')^-1 `load` at a converged state, and its stability; `load` (size,), None: the residual.
 
-    ``band``: the full tangent, if it is known already.
+    ``band``: the full tangent K, None: computed.
 
-    An indefinite band can still belong to a stable total, since the filling stiffens one mode: negatives(K + c g g') =
+    K can be indefinite and K + c g g' definite, since the filling stiffens one mode: negatives(K + c g g') =
     negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
     """
     band = full_tangent(scene, state) if band is None else band
@@ -273,7 +273,7 @@ def rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
 
 
 def downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
-    """The Newton step if the tangent is positive definite, else the step of a tangent with raised diagonal."""
+    """The Newton step if the tangent is positive definite, else a descent step of a tangent with raised diagonal."""
     newton = rank_one(state, band, residual)
     if newton.stable and float(newton.step @ residual) <= 0.0:
         return newton
@@ -282,7 +282,7 @@ def downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirectio
 
 
 def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array, float]:
-    """Descent direction and lift for a tangent with negative modes: the diagonal is raised until it has none."""
+    """Descent step and the lift of the diagonal that makes the tangent definite; -residual and 0 if no lift does."""
     lift = float(np.abs(band[0]).mean()) * 1.0e-4
     rhs = np.stack([-residual, state.by_volume], axis=1)
     for _ in range(12):
@@ -301,9 +301,9 @@ def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array,
 def minimise(
     scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS, find: DirectionFinder = direction
 ) -> NewtonResult | NewtonFailure:
-    """Minimum of the total energy near x: the converged state, or the failure with its reason.
+    """Minimum of the total energy near x (n_nodes, 2): the converged state, or the failure with its reason.
 
-    ``find`` returns the step at a state.
+    ``find`` computes the Newton step at a state.
     """
     state = evaluate(scene, x)
     if state is None:
@@ -335,7 +335,7 @@ def _energy_scale(scene: SolidScene, state: SolverState) -> float:
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
-    """The state at the end of a line search; None if no step lowers the energy."""
+    """State at the end of a line search along ``step`` (size,); None if no share of it lowers the energy."""
     move = scene.solid.expand(step)
     noise = 1.0e-13 * (abs(state.energy) + state.local.energy + scene.solid.wall)
 

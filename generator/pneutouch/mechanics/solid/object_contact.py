@@ -17,14 +17,15 @@ RIM = 1.0 / 30.0
 
 
 def rim_radius(radius: Array, longest: Array, rim: float | None = None) -> Array:
-    """Curvature radius of the rim of plates, at least the longest outer edge of the mesh; ``rim``: a stated one."""
+    """Curvature radii of the rims of plates: the stated ``rim``, None: `RIM` times ``radius`` (0 if that is inf); at
+    least ``longest``, the longest outer edge of the mesh. Lengths in one unit."""
     if rim is not None:
         return np.maximum(rim, longest)
     return np.maximum(np.where(np.isfinite(radius), RIM * radius, 0.0), longest)
 
 
 def flat_radius(radius: Array, rim: Array) -> Array:
-    """Radius up to which a plate is flat: its rim begins half the rim's radius inside its edge."""
+    """Radius up to which a plate is flat: its rim begins half the rim's radius inside, at most half way to the axis."""
     return np.maximum(radius - 0.5 * rim, 0.5 * radius)
 
 
@@ -38,7 +39,7 @@ class Indenter(Protocol):
 
     @property
     def span(self) -> tuple[float, float]:
-        """Radii between which the underside is the object's own; beyond them it turns up as a parabola."""
+        """Radii between which the underside is the object's own; outside them it turns up as a parabola."""
         ...
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
@@ -46,12 +47,12 @@ class Indenter(Protocol):
         ...
 
     def at(self, height: float) -> Indenter:
-        """This body at another height."""
+        """The body at another height."""
         ...
 
 
 def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
-    """Height of the body at its first contact from above with points (r, z), and the radius of the contact."""
+    """Height of a body at its first contact from above with points r, z (n,), and the radius of this contact."""
     height = z - body.at(0.0).underside(r)[0]
     first = int(height.argmax())
     return float(height[first]), float(r[first])
@@ -59,7 +60,7 @@ def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Plate:
-    """Underside at `height`, flat to `radius` and turning up beyond it as a parabola of curvature 1/`rim` (mm)."""
+    """A plate with its underside at `height`, flat to `radius`, beyond a parabola of curvature 1/`rim`."""
 
     height: float
     radius: float
@@ -76,13 +77,14 @@ class Plate:
         return self.height + 0.5 * beyond**2 / self.rim, beyond / self.rim, np.where(beyond > 0.0, 1.0 / self.rim, 0.0)
 
     def at(self, height: float) -> Plate:
-        """This plate at another height."""
+        """The plate at another height."""
         return Plate(height, self.radius, self.rim)
 
 
 @dataclass(frozen=True)
 class ContactEvaluation:
-    """Contact at the quadrature points of the outer wall, (n_edges, n_points) each; nondimensional."""
+    """Contact at the quadrature points of the outer wall, nondimensional: vertical traction per area at rest, vertical
+    gap, slope and second derivative of the object's underside, (n_edges, n_points) each."""
 
     energy: float
     traction: Array
@@ -92,7 +94,7 @@ class ContactEvaluation:
 
 
 class Contact:
-    """Contact energy psi = (k/2) sum w <-g>^2, g the vertical gap and w the reference area of a point.
+    """Contact energy (k/2) sum w <-g>^2: k stiffness, g vertical gap, <-g> penetration, w area of a point at rest.
 
     A stiff penalty: the Newton step settles the contact inside its quadratic model (`newton.direction`), so the cost
     does not depend on k, and k is large enough for the penetration traction/k to be negligible.  The energy is once
@@ -117,7 +119,7 @@ class Contact:
         self._pairs = pairs.reshape(points, -1)
 
     def positions(self, nodes: Array) -> tuple[Array, Array]:
-        """Coordinates r and z of the points, (n_edges, n_points) each."""
+        """Coordinates r and z, (n_edges, n_points) each, of the quadrature points for nodal values (n_nodes, 2)."""
         line = nodes[self.edges]
         return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
 
@@ -128,7 +130,7 @@ class Contact:
         return (line[..., 0] @ shape.T).ravel(), (line[..., 1] @ shape.T).ravel()
 
     def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
-        """Contact energy and tractions under the plate, for positions (n_nodes, 2)."""
+        """Contact with the plate at positions (n_nodes, 2)."""
         r, z = self.positions(nodes)
         under, slope, curve = plate.underside(r)
         gap = under - z
@@ -137,7 +139,7 @@ class Contact:
         return ContactEvaluation(energy, traction, gap, slope, curve)
 
     def linear(self, touch: ContactEvaluation, move: Array) -> Array:
-        """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), with the gap linearised."""
+        """Tractions after a nodal displacement `move` (n_nodes, 2) with linearised gaps; negative for open gaps."""
         return np.asarray(-self.stiffness * self.opening(touch, move, touch.gap))
 
     def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
@@ -148,8 +150,8 @@ class Contact:
     def least_share(self, here: Array, there: Array, slope_here: float, slope_there: float) -> float:
         """Share in (0, 1] of a move at which the energy of contact plus the rest of a quadratic model is minimal.
 
-        The tractions (unclipped) go from ``here`` to ``there`` (n_edges, n_points), the slope of the rest along the
-        move from ``slope_here`` to ``slope_there``; 1 if the total still falls at the end.
+        The tractions, negative for open gaps, go from ``here`` to ``there`` (n_edges, n_points), the slope of the rest
+        along the move from ``slope_here`` to ``slope_there``; 1 if the total still falls at the end.
         """
         begun, change = here.ravel(), (there - here).ravel()
         turning = begun * (begun + change) < 0.0
@@ -163,7 +165,7 @@ class Contact:
         return float(at[before] - slope[before] * (at[past] - at[before]) / (slope[past] - slope[before]))
 
     def force(self, traction: Array, slope: Array) -> Array:
-        """Derivative of the contact energy by edge positions for given tractions, (n_edges, 2 n)."""
+        """Derivative of the contact energy by edge positions, (n_edges, 2 n), for given tractions and slopes."""
         load = self.weight * traction
         out = np.empty((load.shape[0], self._n))
         out[:, AXIAL] = load @ self.shape
@@ -171,7 +173,7 @@ class Contact:
         return out
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
-        """Second derivative with the `active` points (n_edges, n_points) touching, (n_edges, 2 n, 2 n)."""
+        """Second derivative of the energy, (n_edges, 2 n, 2 n), if the `active` points (n_edges, n_points) touch."""
         stiff = np.where(active, self.stiffness, 0.0) * self.weight
         n = self._n // 2
         out = np.zeros((stiff.shape[0], self._n, self._n))
@@ -184,8 +186,8 @@ class Contact:
         return out
 
     def blocks(self, parts: list[tuple[slice, slice, Array]]) -> Array:
-        """Stiffness of the edges (n_edges, 2 n, 2 n) from stiffnesses of the points per area at rest (n_edges,
-        n_points), given by direction of the traction and of the displacement; zero for other directions."""
+        """Stiffness of the edges (n_edges, 2 n, 2 n) from ``parts``: direction of a traction, direction of the
+        displacement that causes it, and the points' stiffness per area at rest (n_edges, n_points)."""
         n = self._n // 2
         out = np.zeros((self.weight.shape[0], self._n, self._n))
         for rows, columns, value in parts:
@@ -214,8 +216,8 @@ class Contact:
 
 @dataclass(frozen=True)
 class Footprint:
-    """radius of the contact's outer edge; largest gap inside it (positive: the wall has left the object there); largest
-    traction; radius of the inner edge (0 if the wall touches on the axis)."""
+    """Footprint of the contact: radius of its outer edge; largest gap inside it (positive: the wall has left the object
+    there); largest traction; radius of its inner edge (0 if the wall touches on the axis)."""
 
     radius: float
     inside_gap: float
@@ -224,11 +226,9 @@ class Footprint:
 
 
 def _edge(r: Array, gap: Array) -> float:
-    """Edge of contact between the last touching point r[0] and the first free one r[1], where the extrapolated square
-    root of the gap is zero.
-
-    The gap of a smooth wall grows with the square of the distance from the edge.
-    """
+    """Radius of the contact's edge, between the last touching point r[0] and the first free one r[1]; ``gap`` is that
+    at r[1] and r[2]. The gap of a smooth wall grows with the square of the distance from the edge, so its square root
+    is extrapolated to 0; r[0] without two free points."""
     if gap.size < 2:
         return float(r[0])
     first, second = np.sqrt(np.maximum(gap, 0.0))

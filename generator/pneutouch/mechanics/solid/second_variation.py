@@ -1,4 +1,4 @@
-"""The second variation of the total energy around the axis, for displacements of n waves on an axisymmetric state.
+"""The second variation of the total energy of an axisymmetric state, for displacements with n waves around the axis.
 
 A displacement is u_r = a cos(n t), u_z = b cos(n t), u_theta = c sin(n t), with t the angle around the axis and nodal
 a, b, c on the mesh of the meridian. Integrals over the angle have half their value for n = 0, where the second
@@ -41,7 +41,7 @@ IN_R, IN_Z, AROUND = range(3)
 
 @dataclass(frozen=True)
 class HarmonicBlocks:
-    """Coefficients of 1, n and n^2 of one family of blocks, each (n_blocks, 3 n_nodes, 3 n_nodes): a, b, c by node."""
+    """Coefficients of 1, n and n^2 of a family of blocks, (n_blocks, 3 n_nodes, 3 n_nodes) each: a, b, c by node."""
 
     constant: Array
     linear: Array
@@ -58,14 +58,14 @@ def empty_blocks(blocks: int, nodes: int) -> Array:
 
 
 def block_family(parts: tuple[Array, Array, Array]) -> HarmonicBlocks:
-    """Block family from coefficients indexed as in `empty_blocks`."""
+    """Block family from the coefficients of 1, n and n^2, each indexed as in `empty_blocks`."""
     size = 3 * parts[0].shape[1]
     return HarmonicBlocks(*(part.reshape(-1, size, size) for part in parts))
 
 
 def with_around(meridian: Array, around: Array | None = None) -> Array:
-    """Blocks of the axisymmetric solid (n_blocks, 2 n, 2 n), extended by those of displacements around the axis,
-    (n_blocks, n, n), or by zeros."""
+    """Blocks as in `empty_blocks` from those of the axisymmetric solid (n_blocks, 2 n, 2 n) and of displacements around
+    the axis (n_blocks, n, n), None: zeros; n nodes a block."""
     nodes = meridian.shape[1] // 2
     out = empty_blocks(meridian.shape[0], nodes)
     out[:, :, :AROUND, :, :AROUND] = meridian.reshape(-1, nodes, 2, nodes, 2)
@@ -75,8 +75,8 @@ def with_around(meridian: Array, around: Array | None = None) -> Array:
 
 
 def face_blocks(solid: SolidModel, state: SolverState) -> list[HarmonicBlocks]:
-    """Families of the edges of the inner wall, of the outer wall and, if the wall can meet a flange, of outer edges
-    with the flange's top; the last without the work of sliding around the axis."""
+    """Block families of the edges of the inner wall, of the outer wall and, if the wall can meet a flange, of outer
+    edges with the flange's top; the last without the work of sliding around the axis."""
     inner, outer = _gas(solid, state), _contact(solid, state)
     if solid.base is not None:
         inner, outer = (
@@ -98,7 +98,7 @@ def _with(face: HarmonicBlocks, meridian: Array, around: Array | None) -> Harmon
 
 
 def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
-    """Second variation of the contact energy: a point that moves around the axis also moves outwards."""
+    """Second variation of the contact energy by outer edges: a point moved around the axis also moves outwards."""
     contact, touch = solid.contact, state.touch
     empty = empty_blocks(*solid.mesh.outer.shape)
     if touch is None:
@@ -143,7 +143,7 @@ R_T, Z_T, T_R, T_Z = range(4)
 
 
 def shear_moduli(law: Hyperelastic, strains: Array, pressure: Array) -> Array:
-    """Hessian (n_points, 4, 4) by the shears, in MPa, of the law's energy plus ``pressure`` (n_points,), MPa, times J.
+    """Hessian (n_points, 4, 4) by the shears, in MPa, of the law's energy plus ``pressure`` (n_points; MPa) times J.
 
     ``strains`` (n_points, 5) as in `elements`. The deformation gradient is block diagonal, so two of its principal axes
     are in the plane and the third is the hoop. A shear between one of the first two and the hoop leaves the other
@@ -182,7 +182,7 @@ _BY_R, _BY_Z, _OVER_R = range(3)
 
 
 class HarmonicSolid:
-    """Operators of a solid that do not depend on its state, and its second variation at a state."""
+    """The second variation of a solid at its states, from operators that do not depend on the state."""
 
     def __init__(self, solid: SolidModel) -> None:
         self.solid = solid
@@ -223,7 +223,7 @@ class HarmonicSolid:
         return np.asarray(out)
 
     def bands(self, state: SolverState, numbers: tuple[int, ...]) -> dict[int, Array]:
-        """Lower bands of the second variation, by number of waves (at least one).
+        """Lower bands of the second variation at a state, by number of waves, for the ``numbers`` (1 or more).
 
         On the axis b is zero; c is -a for one wave, a displacement across the axis; for more waves all three are zero,
         and their rows and columns have only a large diagonal. The trapped gas adds nothing: such displacements keep the
@@ -244,14 +244,13 @@ class HarmonicSolid:
         return out
 
     def _assembled(self, blocks: list[Array]) -> Array:
-        """Band of a sum of blocks; the blocks' signs for c on the axis are reversed in place."""
+        """Lower band of the sum of all families' blocks, whose signs for c on the axis are reversed in place."""
         for block, turned, sign in zip(blocks, self._turned, self._signs, strict=True):
             block[turned] *= sign
         return self._pattern.matrix(blocks)
 
     def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
-        """Second variation by cells, by edges of the inner wall, of the outer wall and, if the wall can meet a flange,
-        of outer edges with the flange's top; the last without the work of sliding around the axis."""
+        """Second variation at a state: families of the cells, then those of `face_blocks`."""
         return [self.wall(state.local), *face_blocks(self.solid, state)]
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
@@ -294,7 +293,7 @@ class HarmonicSolid:
         return np.asarray(moduli * scale[:, None, None])
 
     def _mixed(self, local: PointFields, d: Array) -> tuple[Array, Array]:
-        """Blocks between a and c and between b and c: coefficients of n."""
+        """Coefficients of n in the blocks between a and c, and between b and c, (n_cells, n, n) each."""
         by_hoop = local.jets[BY_AH][:, None] * local.basis[:, 0, IN_PLANE]
         by_hoop += local.jets[BY_JH][:, None] * local.basis[:, 1, IN_PLANE]
         forms = []
@@ -336,7 +335,7 @@ class HarmonicSolid:
 
 
 def _around(d: Array) -> Array:
-    """Bilinear form of c with itself: its r theta strain is -c/R, and its gradients are in theta R and theta Z."""
+    """Bilinear form (n_points, 3, 3) of c with itself: its shear R_T is -c/R, and its gradients are T_R and T_Z."""
     form = np.empty((d.shape[0], 3, 3))
     places = ((_BY_R, T_R, 1.0), (_BY_Z, T_Z, 1.0), (_OVER_R, R_T, -1.0))
     for i, row, sign in places:
@@ -346,7 +345,8 @@ def _around(d: Array) -> Array:
 
 
 def _number(solid: SolidModel) -> Index:
-    """Unknowns (n_nodes, 3) in the axisymmetric solid's order, -1 where fixed; on the axis a and c share one."""
+    """Numbers (n_nodes, 3) of the unknowns in the axisymmetric solid's order, -1 if fixed; a and c on the axis
+    share."""
     mesh: SolidMesh = solid.mesh
     free = np.ones((mesh.nodes.shape[0], 3), dtype=bool)
     free[mesh.axis] = True, False, False

@@ -1,4 +1,4 @@
-"""Stretch and stress on the two faces of the wall, where bending makes them largest."""
+"""Stretch and stress on the two faces of the wall, where bending makes them largest, and limits that they reach."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,8 +32,8 @@ class WallExtremes:
 
 
 class StrainProbe:
-    """Evaluates strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are far enough from
-    the clamp, and exactly at the limit of that distance, so that no station comes or goes as the wall changes.
+    """Strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are farther than `CLAMP_REACH`
+    from the clamp, and exactly at that distance, so that the extremes change continuously with the wall.
 
     operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` selects those far enough.
     edge_operator (n_edges, 5, 2 n_nodes): strains at the limit distance, in the cells ``edge_cells``.
@@ -60,14 +60,14 @@ class StrainProbe:
         self._centre = strain_operator(rest, cells, np.zeros((1, 2)))[0][:, 0]
 
     def _distance(self, points: Array) -> Array:
-        """Distance of points (n, 2) at rest from the nearest clamped node."""
+        """Distances (n,) of points (n, 2) at rest from the nearest clamped node; inf without one."""
         held = self.solid.rest[self.solid.mesh.clamped]
         if held.size == 0:
             return np.full(points.shape[0], np.inf)
         return np.asarray(np.hypot(*(points[:, None, :] - held[None, :, :]).T).min(axis=0))
 
     def _edges(self) -> list[tuple[int, Array]]:
-        """Cells, and local points on their faces, at which the distance from the clamp equals the limit."""
+        """Pairs of a cell and a local point (2,) on its face whose distance from the clamp is the limit."""
         along = np.linspace(-1.0, 1.0, _SEARCH)
         reach = CLAMP_REACH * self.solid.wall
         edges = []
@@ -81,7 +81,7 @@ class StrainProbe:
         return edges
 
     def _strains(self, x: Array) -> tuple[Array, Array, Array, Array]:
-        """In-plane squared norm and area ratio, hoop stretch (n_points,) each; principal stretches (3, n_points)."""
+        """Invariants a, j, h of `laws.strain` (n_points,) and principal stretches (3, n_points) at positions x."""
         nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
         f = np.matmul(self.operator, nodes).reshape(-1, 5)[self.far]
         f = np.concatenate([f, np.matmul(self.edge_operator, nodes[self.edge_cells])[..., 0]])
@@ -96,7 +96,7 @@ class StrainProbe:
         return float(self._strains(x)[3].max())
 
     def greatest_tension(self, x: Array) -> float:
-        """Uniaxial stretch with the same greatest first invariant as on both faces, at positions x (n_nodes, 2)."""
+        """Uniaxial stretch with the greatest first invariant of both faces, at nondimensional positions x."""
         _, j, h, stretch = self._strains(x)
         return float(same_invariant(((stretch**2).sum(axis=0) * (j * h) ** (-2.0 / 3.0)).max()))
 
@@ -125,14 +125,14 @@ class StrainProbe:
         return np.asarray(np.maximum(in_plane, f[:, HOOP]))
 
     def outlines(self, positions: Array) -> Array:
-        """Outlines of the cells (n_cells, 4 or 8, 2), in the unit of the positions (n_nodes, 2)."""
+        """Outlines of the cells (n_cells, 4 or 8, 2) in the unit of the given positions (n_nodes, 2)."""
         cells = self.solid.mesh.cells
         # Each corner and the middle of the side after it.
         around = np.arange(8).reshape(2, 4).T.ravel() if cells.shape[1] > 4 else np.arange(4)
         return np.asarray(positions[cells[:, around]])
 
     def peak(self, x: Array) -> WallExtremes:
-        """Extremes for nondimensional positions x (n_nodes, 2)."""
+        """Extremes over both faces for nondimensional positions x (n_nodes, 2)."""
         stretch, stress = self.principal(x)
         apart = stress - np.roll(stress, 1, axis=0)
         mises = np.sqrt(0.5 * (apart**2).sum(axis=0))
@@ -148,9 +148,8 @@ def burst(probe: StrainProbe, inflation: Inflation, break_strain: float) -> tupl
 def met(
     probe: StrainProbe, inflation: Inflation, measure: Callable[[Array], float], level: float
 ) -> tuple[float, float] | None:
-    """Pressure (MPa) and outer apex height (mm) at which a measure of positions (n_nodes, 2) reaches a level, or None.
-
-    Bisected on the Hermite cubic between neighbouring states.
+    """Pressure (MPa) and outer apex height (mm) at which inflation first brings ``measure``, a function of the
+    positions (n_nodes, 2), to ``level``; None: never. Bisected on the Hermite cubic between states.
     """
     solid = probe.solid
     for a, b in zip(inflation.states, inflation.states[1:], strict=False):

@@ -25,7 +25,7 @@ _MOST_SOLVES = 12
 
 @dataclass(frozen=True)
 class AxisymmetryLoss:
-    """The axisymmetric path is unstable below a plate height (R0) for displacements of n ``waves`` around the axis."""
+    """Plate height (R0) below which the axisymmetric path is unstable to n ``waves`` around the axis."""
 
     waves: int
     height: float
@@ -37,7 +37,7 @@ def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[i
 
 
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
-    """Losses of stability of a path, from first contact down: to one wave around the axis, and to 2 to ``most`` waves.
+    """Losses of stability of a path from first contact down: the first to one wave, the first to 2 to ``most`` waves.
 
     States are checked at every quarter of R0 of plate travel, and the last one. A loss between two of these is
     bracketed by bisection over the states in between, and located by solving for states between neighbours.
@@ -61,7 +61,7 @@ def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MO
 
 
 def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> AxisymmetryLoss:
-    """Loss for n waves within a part of a path whose last state is unstable."""
+    """Loss of stability to n waves in a part of a path whose last state is unstable."""
     stable, unstable = 0, len(path) - 1
     if unstable_waves(harmonic, path[0].state, (n,)):
         return AxisymmetryLoss(n, path[0].height)
@@ -99,8 +99,8 @@ def _root(
 ) -> float:
     """Share of the path from a stable state (0) to an unstable one (1) at which the lowest eigenvalue is zero.
 
-    By inverse quadratic interpolation of the ``values`` at known shares, or bisection if that leaves the bracket.
-    """
+    By inverse quadratic interpolation of the ``values`` at known shares, or bisection if that leaves the bracket, to
+    ``within``. ``solve`` gives the state at a share; if it gives None, the last estimate is returned."""
     known, low, high, guess = len(values), 0.0, 1.0, 1.0
     for _ in range(_MOST_SOLVES):
         last, guess = guess, _zero(values)
@@ -119,7 +119,7 @@ def _root(
 
 
 def _zero(values: dict[float, float]) -> float:
-    """Zero of a quantity by inverse interpolation of its three values nearest to zero; nan if two of them are equal."""
+    """Place of a zero, by inverse interpolation of the three ``values`` (by place) nearest 0; nan if two are equal."""
     near = sorted(values.items(), key=lambda pair: abs(pair[1]))[:3]
     places, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
     total = 0.0
@@ -132,7 +132,7 @@ def _zero(values: dict[float, float]) -> float:
 
 
 def _between(before: PlateState, after: PlateState, height: float) -> SolverState | None:
-    """State at a plate height between two neighbours on the path, or None if no equilibrium is found."""
+    """State at a plate height (R0) between two neighbours on the path; None if no equilibrium is found."""
     plate = after.scene.plate
     assert plate is not None
     span = before.height - after.height
