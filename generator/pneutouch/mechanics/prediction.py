@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeformedShape:
-    """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the greatest
-    principal stretch in each cell (n,); ``body`` is the section (k, 2) of an object other than a plate."""
+    """The wall at an indentation (mm; 0: inflated, None: unloaded): outlines of the cells (n, m, 2), (r, z) in mm, and
+    the greatest stretch in each (n,); ``body``: section (k, 2) of an object in contact, None for a plate."""
 
     indentation: float | None
     cells: Array

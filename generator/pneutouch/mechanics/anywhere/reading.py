@@ -20,15 +20,15 @@ _SLACK = 1e-9
 
 
 def batch_conditions(batch: SensorBatch, limit_pressure: Array, cavity_volume: Array) -> DomeConditions:
-    """Table inputs of n sensors, from their limit pressures (MPa) and their cavity volumes (mm3) at the driving
-    pressures."""
+    """Inputs of the table for n sensors, from their limit pressures (MPa) and their cavity volumes (mm3) at the driving
+    pressures, (n,) each."""
     volume = (cavity_volume + batch.dead_volume) / batch.inner_radius**3
     gas = (batch.driving_pressure + batch.ambient_pressure) / batch.shear_modulus / volume
     return DomeConditions(batch.wall_ratio, batch.driving_pressure / limit_pressure, gas)
 
 
 def state_conditions(sensor: Sensor, states: Sequence[SensorState], limit_pressure: float) -> DomeConditions:
-    """Table inputs of one sensor in n predicted states; ``limit_pressure`` in MPa."""
+    """Inputs of the table for one sensor in n predicted states; ``limit_pressure`` in MPa."""
     driving, cavity = (np.array([getattr(s, name) for s in states]) for name in ("driving_pressure", "cavity_volume"))
     return batch_conditions(batch_of(sensor, driving), np.full(driving.size, limit_pressure), cavity)
 
@@ -42,7 +42,7 @@ def covered(domes: DomeConditions) -> Flags:
 
 
 def outside(sensor: Sensor, domes: DomeConditions) -> str | None:
-    """Reason why the table does not cover a sensor in some of its states, or None if it covers all."""
+    """Reason why the table does not cover a sensor in some of its states ``domes``; None if it covers all."""
     dome, wall = sensor.dome, sensor.wall
     reasons = [
         (sensor.protocol.other_contact is not None, str(sensor.protocol.other_contact)),
@@ -67,8 +67,8 @@ def _axes(domes: DomeConditions) -> list[tuple[Array, tuple[float, ...]]]:
 
 
 SMALLEST_BALL, FARTHEST, STEEPEST_TILT = 0.3, 0.6, float(np.radians(20.0))
-"""Ranges assumed for an unknown contact: smallest ball radius and greatest offset of its axis from the dome's, both in
-R0, and the greatest tilt of a plate, rad."""
+"""Ranges assumed for an unknown contact: smallest radius of a ball and greatest offset of its axis from the dome's,
+both in R0, and the greatest tilt of a plate, rad."""
 
 TABLE_ERROR = 0.05
 """Greatest error of the logarithm of the force, found in presses that were not used to make the table
@@ -77,19 +77,19 @@ TABLE_ERROR = 0.05
 _POINTS, _FEWER = 4, 3
 _LEVELS = 8
 _FIRST = 0.05
-"""Least travel of the central plate, in R0, from which a reading is counted."""
+"""Least travel of the central plate, in R0, from which readings count."""
 
 
 def ball_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
-    """Places of balls of radii (m,), may be infinite, at offsets (m,), both in R0, on domes of wall ratios (n,)."""
+    """Places of balls of radii (m,), inf for a plate, at offsets (m,), both in R0, on domes of wall ratios (n,)."""
     curvature = np.broadcast_to(1.0 / radius, (wall_ratio.size, radius.size))
     lean = offset * curvature / ((1.0 + wall_ratio)[:, None] * curvature + 1.0)
     return ContactPlaces(curvature, lean)
 
 
 def edge_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
-    """Places of bar edges with nose radii (m,) and middle planes at offsets (m,), both in R0, on domes of wall ratios
-    (n,); a radius may be infinite. The cross-section of a bar touches like that of a ball of the same radius."""
+    """Places of bars with edges of radii (m,), may be inf, and middle planes at offsets (m,), both in R0, on domes of
+    wall ratios (n,). The cross-section of a bar touches like that of a ball of the same radius."""
     return ball_places(wall_ratio, radius, offset)._replace(lying=True)
 
 
@@ -102,8 +102,8 @@ def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
 def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, table: PlaceTable | None = None) -> Array:
     """Logarithm (n, m, k) of the force under an object over that under the central plate at the same reading. The
     readings are those of the plate at travels ``levels`` (n, k) in R0; NaN if the object does not reach the reading by
-    0.75 R0.
-    A force that is read by the central calibration is exp(-logarithm) times the true one."""
+    0.75 R0 of travel.
+    A force that is read by the central calibration is exp(-logarithm) times the true one. ``table`` None: shipped."""
     table = table or shipped()
     nodes, known = np.array(table.recipe.levels), table.logs(domes, places)
     at = np.clip(levels, nodes[0], nodes[-1])
@@ -134,7 +134,7 @@ def place_uncertainty(domes: DomeConditions, range_end: Array) -> Array:
 
 
 def _balls(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
-    """Quadrature points over balls and their offsets, (n, m), with their weights (m,)."""
+    """Quadrature points (n, m) over the assumed balls and their offsets, with their weights (m,)."""
     curvature, by_curvature = _even(_POINTS, 1.0 / SMALLEST_BALL)
     disc, by_disc = _even(_FEWER, 1.0)
     radius, offset = np.repeat(1.0 / curvature, _FEWER), np.tile(FARTHEST * np.sqrt(disc), _POINTS)
@@ -142,13 +142,13 @@ def _balls(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
 
 
 def _tilts(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
-    """Quadrature points over the tilt of a plate, (n, m), with their weights (m,)."""
+    """Quadrature points (n, m) over the assumed tilt of a plate, with their weights (m,)."""
     tilt, weight = _even(_FEWER, STEEPEST_TILT)
     return plate_places(domes.wall_ratio, tilt), weight
 
 
 def _even(count: int, end: float) -> tuple[Array, Array]:
-    """Gauss-Legendre points from 0 to ``end`` and their weights, which sum to 1."""
+    """Gauss-Legendre points from 0 to ``end`` and their weights, which sum to 1, (count,) each."""
     points, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * end * (points + 1.0), 0.5 * weights
 

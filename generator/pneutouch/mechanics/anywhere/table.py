@@ -1,4 +1,4 @@
-"""Table of contact anywhere on the dome: the presses it is made from, and interpolation in it.
+"""Table of contact anywhere on the dome: the presses from which it is made, and interpolation in it.
 
 The shipped table is read once.
 """
@@ -62,7 +62,7 @@ class PlaceTableRecipe(StoredRecipe):
 
 
 class NodeAxis(NamedTuple):
-    """A direction of the table with its nodes (m,), ascending.
+    """An axis of the table with its nodes (m,), ascending.
 
     SciPy's `CubicHermiteSpline` would give the same values. It is not used because every datasheet reads the table, and
     importing it takes 0.8 times as much processor time as importing NumPy and `scipy.linalg`.
@@ -99,12 +99,12 @@ SHIPPED = Path(__file__).with_name("contact.npz")
 NodeWeights = Callable[[NodeAxis, Array], Array]
 
 _PLATE_FIRST = ((0, 0), (1, 0), (0, 0))
-"""Padding that puts the plate before the curvatures of a table (n, curvatures, k)."""
+"""Padding that puts the plate (curvature 0) before the curvatures of a table (n, curvatures, k)."""
 
 
 class DomeConditions(NamedTuple):
-    """Domes before contact, (n,) each: wall ratio t0/R0, share of the limit pressure, and gas stiffness in mu/R0^3, the
-    absolute gas pressure over the gas volume at first contact."""
+    """Domes before contact, (n,) each: wall ratio t0/R0, driving pressure over limit pressure, and gas stiffness in
+    mu/R0^3, the absolute gas pressure over the gas volume at first contact."""
 
     wall_ratio: Array
     share: Array
@@ -112,7 +112,7 @@ class DomeConditions(NamedTuple):
 
 
 class ContactPlaces(NamedTuple):
-    """Objects and their places on n domes, (n, m) each: curvature R0/a and lean, as in `PlaceTableRecipe`. The objects
+    """m objects in their places on n domes, (n, m) each: curvature R0/a and lean, as in `PlaceTableRecipe`. The objects
     are balls and plates; if ``lying``, edges of bars that lie across the plane of the lean."""
 
     curvature: Array
@@ -121,13 +121,13 @@ class ContactPlaces(NamedTuple):
 
 
 class PlaceTable:
-    """Tables of the logarithm of the force under an object over that under the central plate at equal reading."""
+    """Tables of the logarithm of the force under an object over that under the central plate at the same reading."""
 
     def __init__(self, tables: Mapping[str, Array], recipe: PlaceTableRecipe) -> None:
         self.recipe, self._tables = recipe, {name: np.asarray(table, dtype=float) for name, table in tables.items()}
 
     def logs(self, domes: DomeConditions, places: ContactPlaces) -> Array:
-        """Logarithms at every level of the recipe, (n, m, levels); constant beyond the outermost nodes."""
+        """Logarithms (n, m, levels) at every level of the recipe; constant beyond the outermost nodes."""
         r = self.recipe
         central = np.pad(self._of_central(domes, "central"), _PLATE_FIRST)
         if not places.lying:
@@ -142,7 +142,7 @@ class PlaceTable:
         return np.asarray(middle + self._off_axis(domes, places, ("leaning", "edge_leaning"), NodeAxis.weights))
 
     def reach(self, domes: DomeConditions, places: ContactPlaces) -> Array:
-        """Highest level that the object reaches within the recipe's depth, (n, m)."""
+        """Highest level (n, m) that the object reaches within the recipe's depth."""
         r, straight = self.recipe, NodeAxis.straight
         central = np.pad(self._of_central(domes, "central_reach")[..., None], _PLATE_FIRST, constant_values=r.depth)
         values = _at((0.0, *r.curvatures), places.curvature, straight) @ central
@@ -192,7 +192,7 @@ class PlaceTable:
 
 
 def _dome_weights(walls: Sequence[float], shares: Sequence[float], domes: DomeConditions) -> tuple[Array, Array]:
-    """Weights of wall ratios and of shares of the limit pressure for n domes."""
+    """Weights (n, walls) of wall ratios and (n, shares) of shares of the limit pressure for n domes."""
     return (
         NodeAxis(np.log(walls)).weights(np.log(domes.wall_ratio)),
         NodeAxis(np.sqrt(shares)).weights(np.sqrt(domes.share)),
@@ -200,7 +200,7 @@ def _dome_weights(walls: Sequence[float], shares: Sequence[float], domes: DomeCo
 
 
 def _at(nodes: Sequence[float], at: Array, weights: NodeWeights = NodeAxis.weights) -> Array:
-    """Weights of nodes for values of any one shape, (..., nodes)."""
+    """Weights (..., nodes) of the nodes of an axis for values ``at`` (...)."""
     return weights(NodeAxis(np.array(nodes)), at.ravel()).reshape(*at.shape, -1)
 
 

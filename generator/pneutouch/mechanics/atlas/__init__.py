@@ -1,5 +1,5 @@
-"""The atlas: the solid's answers in dimensionless form, tabulated once.
+"""The atlas: results of the solid in dimensionless form, tabulated once.
 
-`recipe` says which states the solid solves and how its answers are stored, `table` looks them up, `press` adds gas
-and plate, `respond` turns many sensors at once into figures. The table is built outside the package: ``make atlas``.
+`recipe` states which presses the solid solves and how their results are stored, `table` looks them up, `press` adds gas
+and plate, `respond` computes figures of many sensors at once. The table is built outside the package: ``make atlas``.
 """

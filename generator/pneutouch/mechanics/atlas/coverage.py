@@ -1,4 +1,4 @@
-"""Sensors that the atlas covers: as they are, under a plate in place of their contact, and as stand-ins in a fit."""
+"""Sensors that the atlas covers, and the sensors that take the place of others: under a plate, and in a fit."""
 
 from pneutouch.mechanics.atlas.figures import softer_walls
 from pneutouch.mechanics.atlas.table import Atlas, shipped
@@ -6,12 +6,12 @@ from pneutouch.mechanics.sensor import RigidBase, Sensor, WallMaterial
 from pneutouch.shape.hemisphere import no_hemisphere
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
-"""For `meets_ring`: outward bulge of the wall next to its base in R0 times wall ratio, depth from which it is counted
-(R0), and distance inside its edge at which the ring of the solid begins (R0)."""
+"""For `meets_ring`, in R0: outward bulge of the wall next to its base times the wall ratio, depth at which it begins,
+and distance inside its edge at which the ring of the solid begins."""
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Reason why the atlas does not cover a sensor, or None if it does. The box is in `atlas.recipe.AtlasRecipe`.
+    """Reason why the atlas (None: the shipped one) does not cover a sensor; None if it does. Limits: `AtlasRecipe`.
 
     A ring that clamps the flange does not exclude a sensor: the atlas neglects the ring (`meets_ring`).
     """
@@ -39,7 +39,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
 
 
 def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float, atlas: Atlas | None = None) -> str | None:
-    """Reason why the atlas covers no dome of a resin, or None if it covers some; ``ambient_pressure`` in MPa."""
+    """Reason why the atlas (None: the shipped one) covers no dome of a resin; None if some. Pressure in MPa."""
     recipe = (atlas or shipped()).recipe
     # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
     own_law = wall.law is not None and wall.largest_stretch is None
@@ -66,9 +66,9 @@ def meets_ring(sensor: Sensor) -> bool:
 
 
 def under_plate(sensor: Sensor) -> Sensor:
-    """The sensor under a frictionless plate; a sufficiently wide plate takes the place of another object.
+    """The sensor pressed by a frictionless plate, of at least twice R0 in radius if it replaces another object.
 
-    An offset, tilt or shear and an object that lies across the dome are kept: the correction is axisymmetric.
+    An offset, tilt or shear and an object that lies across the dome are kept: corrections are axisymmetric.
     """
     protocol = sensor.protocol
     if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
@@ -78,8 +78,8 @@ def under_plate(sensor: Sensor) -> Sensor:
 
 
 def stand_in(sensor: Sensor) -> Sensor:
-    """The sensor that a fit corrects: under a plate without friction, its wall neo-Hookean and of one modulus, its base
-    a plane without the ring that clamps the flange: presses that meet it end there."""
+    """The sensor to which a fit applies its correction: pressed by a plate without friction, with a homogeneous wall,
+    neo-Hookean in place of a fitted law, and a base without the ring that clamps the flange."""
     if sensor.dome.base is not None:
         sensor = sensor.replace(base=RigidBase())
     return under_plate(sensor.even)
@@ -90,14 +90,14 @@ _DEPTH = 0.75
 
 
 def outside_fit(sensor: Sensor) -> str | None:
-    """Reason why a sensor cannot be fitted to measured runs, or None if it can: a fit uses the atlas, at depths that it
-    covers, times the solid's ratio to it where it does not cover law, grade, softness or contact."""
+    """Reason why a sensor cannot be fitted to measured runs; None if it can. A fit uses the atlas to `_DEPTH`, times
+    the solid's ratio to the `stand_in` for a law, grade, softness or contact that the atlas does not cover."""
     return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
 
 
 def is_corrected(sensor: Sensor) -> bool:
-    """True if a fit uses the atlas times the solid's ratio to it: the atlas does not cover the sensor, or leaves out
-    the ring that its wall meets."""
+    """True if a fit multiplies the atlas by the solid's ratio to the `stand_in`: the atlas does not cover the sensor,
+    or leaves out the ring that its wall meets."""
     return outside_atlas(_shallow(sensor)) is not None or meets_ring(_shallow(sensor))
 
 

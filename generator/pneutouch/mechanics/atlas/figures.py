@@ -1,4 +1,4 @@
-"""Predicted figures of batches and of their neighbours with shifted inputs, in one call of the atlas."""
+"""Predicted figures, by the atlas, of batches of sensors and of the same sensors with shifted inputs."""
 
 from dataclasses import replace
 from functools import cache
@@ -23,8 +23,8 @@ FIGURES = (
 """The predicted figures, in the order of every array over figures."""
 
 INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
-"""Inputs through which a source of uncertainty may act on the model, in the order of every array over inputs; field or
-property names of `SensorBatch`."""
+"""Inputs of the model on which a source of uncertainty may act, in the order of every array over inputs; names of
+fields of `SensorBatch`."""
 
 SENSITIVITY = FIGURES.index(SENSITIVITY_KEY)
 CONTACT_FIGURES = (
@@ -38,7 +38,7 @@ DEAD = INPUTS.index("dead_volume")
 
 
 _MARGIN = 0.001
-"""Distance in R0 that the depth of `neighbourhood` keeps from the edge of the surveyed data (`AtlasRecipe.beyond`)."""
+"""Distance (R0) from the depth limit of `neighbourhood` to the depth of the solved states (`AtlasRecipe.beyond`)."""
 
 SOFTEST = 6.0
 """Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is not one of their
@@ -50,11 +50,11 @@ solid's, derivatives by modulus and wall within 5 % or 0.04; at 11 they are off 
 
 @cache
 def neighbourhood() -> Atlas:
-    """The shipped atlas with its box opened to nearly all the data it holds, for sensors with shifted inputs.
+    """The shipped atlas with its box (limits of inputs) opened to nearly all its data, for sensors with shifted inputs.
 
     A sensor pressed to three quarters of R0 is on the edge of the box, and outside if its radius is reduced at the same
-    travel. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that such neighbours can be
-    evaluated. The gas may be twice as stiff as in `softer_walls`, because the neighbours of those sensors count too.
+    travel. The tables go on to `AtlasRecipe.beyond` and to walls outside the box, so that such sensors can be
+    evaluated. The gas may be twice as stiff as in `softer_walls`, for the shifted sensors of that atlas.
     """
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios
@@ -77,7 +77,7 @@ def softer_walls() -> Atlas:
 
 
 def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
-    """The batch with one input changed by ``by`` (n,): times exp(by); the dead volume plus ``by`` mm3.
+    """The batch with the input ``name`` multiplied by exp(``by``), (n,); the dead volume changes by the sum, mm3.
 
     At least half of the unloaded cavity stays as gas volume: a tiny sensor holds less than a deviation of 0.1 mL.
     """
@@ -89,7 +89,7 @@ def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
 
 
 def unit_step(batch: SensorBatch) -> Array:
-    """Unit step of each input, (inputs, n): 1 in the logarithm; for the dead volume the whole gas volume, mm3."""
+    """Unit of ``by`` in `moved` for each input, (inputs, n): 1, for the dead volume the whole gas volume, mm3."""
     steps = np.ones((len(INPUTS), len(batch)))
     steps[DEAD] = REST_VOLUME * batch.inner_radius**3 + np.maximum(batch.dead_volume, 0.0)
     return steps

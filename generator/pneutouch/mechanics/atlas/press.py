@@ -1,6 +1,6 @@
-"""Many sensors pressed at once with the states of the atlas, with trapped gas.
+"""Many sensors with trapped gas pressed at once by a plate, with states interpolated in the atlas.
 
-`SensorBatch` holds the inputs of the sensors.
+`SensorBatch` holds the inputs of the sensors; ``nu`` is the volume coordinate of `recipe.AtlasRecipe`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _CLOSE = 1.0e-9
 _NO_TRAVEL = 1.0e-9
 _INFLATING = 40
 _BELOW_REST = 0.01
-"""Lowest nu of an inflated state: the table's pressure at rest differs from zero by its error, so nu may be below 0."""
+"""Lowest nu of an inflated state: below 0, because the table's pressure at rest is not exactly zero."""
 
 
 @dataclass(frozen=True)
@@ -48,33 +48,33 @@ class SensorBatch:
 
     @classmethod
     def join(cls, batches: Sequence[SensorBatch]) -> SensorBatch:
-        """Join several batches, one after the other."""
+        """One batch of the sensors of several, one after the other."""
         return cls(*(np.concatenate([getattr(batch, field.name) for batch in batches]) for field in fields(cls)))
 
     def take(self, rows: Index | Flags | slice) -> SensorBatch:
-        """Batch of the selected sensors."""
+        """Batch of the selected sensors, by index, mask or slice."""
         return SensorBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
     @property
     def wall_ratio(self) -> Array:
-        """t0/R0."""
+        """Wall thickness over inner radius, t0/R0, (n,)."""
         return self.wall_thickness / self.inner_radius
 
     @property
     def flat_radius(self) -> Array:
-        """Radius over which the plate is flat, in R0."""
+        """Radius up to which the plate is flat, in R0, (n,)."""
         radius = self.plate_radius / self.inner_radius
         return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.wall_ratio)))
 
 
 def longest_outer_edge(wall_ratio: Array) -> Array:
-    """Chord of the outer edges of a hemisphere's default mesh, in R0, for wall ratios of any shape."""
+    """Length (R0) of the outer edges of a hemisphere's default mesh, for wall ratios of any shape."""
     return np.asarray(2.0 * (1.0 + wall_ratio) * np.sin(0.25 * np.pi / arc_cells(0.5 * np.pi, wall_ratio)))
 
 
 class PressTrack(NamedTuple):
-    """States along the plate's travel, (n, m) each; nondimensional. ok: the gas has a stable state and the atlas covers
-    it; margin: dp/dV of the wall minus that of the gas, positive while stable."""
+    """States of n sensors along the plate's travel, (n, m) each; nondimensional. ok: this state and all before it are
+    stable and covered by the atlas; margin: dp/dV of the wall minus that of the gas, positive while stable."""
 
     nu: Array
     height: Array
@@ -83,14 +83,14 @@ class PressTrack(NamedTuple):
     ok: Flags
 
     def each(self, change: Callable[[Any], Any]) -> PressTrack:
-        """Track with a function applied to every array."""
+        """Track with the function ``change`` applied to every array."""
         return PressTrack(
             change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
         )
 
 
 class AtlasSolution(NamedTuple):
-    """Solutions, (n,) each; see `PressTrack`. ``converged`` may also be True for unsupported or folded states."""
+    """Solutions, (n,) each; fields as in `PressTrack`. ``converged`` can be True for unsupported or folded states."""
 
     nu: Array
     point: AtlasPoint
@@ -99,12 +99,12 @@ class AtlasSolution(NamedTuple):
 
     @property
     def ok(self) -> Flags:
-        """True where the solution is a state of the sensor."""
+        """True where the solution is a stable state, unbuckled and covered by the atlas."""
         return self.converged & self.point.supported & ~self.point.folded
 
 
 class AtlasPress:
-    """A batch with its slices of the atlas, its gas and its inflated states; all attributes nondimensional.
+    """A batch with its gas and inflated states, nondimensional; sensor i has slice ``k[i]`` of the atlas.
 
     Every sensor ends its iterations by itself: its states are the same in any batch.
     """
@@ -122,7 +122,7 @@ class AtlasPress:
         self.content = (self.pressure + self.ambient) * gas_volume
 
     def volume(self, nu: Array) -> Array:
-        """Cavity volume at nu."""
+        """Cavity volume (R0^3) at nu, (n,)."""
         return REST_VOLUME + nu * self.reach
 
     def rows(self, rows: Index | Flags) -> AtlasPress:
@@ -141,7 +141,7 @@ class AtlasPress:
         memory: Array | float = 0.0,
         iterations: int = _NEWTON,
     ) -> AtlasSolution:
-        """Equilibria (n,) of wall and gas at one pressure, by Newton's method from guesses ``nu`` of the volume.
+        """Equilibria (n,) of wall and gas at plate heights (n,), by Newton's method from guesses ``nu`` of the volume.
 
         The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. Pressure and force are corrected
         along their tangents for the last step, which is small enough for that to be accurate to its square.
@@ -169,7 +169,7 @@ class AtlasPress:
         return AtlasSolution(nu + step, point, margin, reached & (margin > 0))
 
     def march(self, indentation: Array) -> PressTrack:
-        """Equilibria at plate travels (n, m) in R0, ascending along the last axis from zero."""
+        """Equilibria at plate travels ``indentation`` (n, m) in R0, ascending along the last axis from 0."""
         nu = self.free
         ok = np.ones(nu.size, dtype=bool)
         rate, bend, before = np.zeros_like(nu), np.zeros_like(nu), indentation[:, 0]
@@ -190,7 +190,7 @@ class AtlasPress:
         return PressTrack(stacked[0], stacked[1], AtlasPoint(*stacked[2:-2]), stacked[-2], stacked[-1])
 
     def field(self, name: str, track: PressTrack) -> Array:
-        """A tabulated field along a track, (n, m)."""
+        """The tabulated field ``name`` of `recipe.FIELDS` along a track, (n, m)."""
         return self.several((name,), track)[0]
 
     def several(self, names: Sequence[str], track: PressTrack) -> list[Array]:

@@ -1,8 +1,7 @@
 """Recipe of the atlas: the presses for which the solid is solved, and the form in which its results are stored.
 
-The tables are uniform B-splines: few numbers, smooth derivatives, and each value from a handful of products.
-
-Recipes are stored as text (JSON) in the file of the shipped table.
+The tables hold coefficients of uniform B-splines: few numbers, smooth derivatives, quick to evaluate. The recipe is
+stored as JSON in the file of the shipped table.
 """
 
 from __future__ import annotations
@@ -19,9 +18,10 @@ from pneutouch.arrays import Array, Index
 
 @lru_cache
 def pieces(degree: int) -> Array:
-    """Coefficients, by powers of u, of the degree + 1 B-splines in a cell at position u, (degree + 1, degree + 1).
+    """Coefficients (degree + 1, degree + 1) of the B-splines that are nonzero in a cell, as polynomials of the position
+    u.
 
-    Row k holds the factors of u^k. By the recursion of de Boor (1972) on uniform knots.
+    Row k holds the factors of u^k, each column one spline. By the recursion of de Boor (1972) on uniform knots.
     """
     rows = np.ones((1, 1))
     for d in range(1, degree + 1):
@@ -40,7 +40,7 @@ def pieces(degree: int) -> Array:
 
 @dataclass(frozen=True)
 class SplineAxis:
-    """An interval divided into cells, with cells + degree spline coefficients.
+    """An interval from ``low`` to ``high`` in ``cells`` cells, with cells + degree spline coefficients.
 
     The cells are equal in z = sqrt(x - low + stretch^2), finest at the low end, or in x where ``stretch`` is None.
     """
@@ -53,7 +53,7 @@ class SplineAxis:
 
     @property
     def size(self) -> int:
-        """Number of coefficients."""
+        """Number of spline coefficients."""
         return self.cells + self.degree
 
     @cached_property
@@ -84,7 +84,7 @@ class SplineAxis:
         return np.concatenate([value, first / self._spacing, second / self._spacing**2], axis=1)
 
     def basis(self, x: Array) -> tuple[Index, Array]:
-        """Index of the first coefficient (n,) for each x, and weights of value, slope and curvature (n, 3, degree + 1).
+        """Index of the first coefficient (n,) for each x, and weights (n, 3, degree + 1) of value, slope and curvature.
 
         Beyond the ends the polynomial of the last cell is extrapolated.
         """
@@ -97,7 +97,7 @@ class SplineAxis:
         return cell, weight
 
     def values(self, x: Array) -> tuple[Index, Array]:
-        """Index of the first coefficient (n,) for each x, and weights of the value only (n, degree + 1)."""
+        """Index of the first coefficient (n,) for each x, and weights (n, degree + 1) of the value only."""
         _, cell, powers = self._powers(x)
         return cell, powers @ pieces(self.degree)
 
@@ -114,7 +114,7 @@ class SplineAxis:
         return z, cell, powers
 
     def rows(self, x: Array, order: int = 0) -> Array:
-        """Weights of the derivative of one order as full rows, (n, size)."""
+        """Weights (n, size) of all coefficients for the derivative of ``order`` 0 (value), 1 or 2."""
         cell, weight = self.basis(x)
         out = np.zeros((x.size, self.size))
         np.put_along_axis(out, cell[:, None] + np.arange(self.degree + 1), weight[:, order], axis=1)
@@ -139,7 +139,7 @@ class StoredRecipe:
 
 @dataclass(frozen=True)
 class AtlasRecipe(StoredRecipe):
-    """Box and resolution of the atlas, in units of R0 and mu.
+    """Box (limits of the inputs) and resolution of the atlas, in units of R0 and mu.
 
     Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one, as a share of its value at the limit point;
     ``w``, the distance of the plate below the free apex at that volume. A press with trapped gas reaches nu < 0 where
@@ -173,17 +173,17 @@ class AtlasRecipe(StoredRecipe):
 
     @property
     def wall_ratios(self) -> Array:
-        """Surveyed t0/R0, (walls,), equally spaced in the logarithm from slightly below the box to slightly above."""
+        """Solved t0/R0, (walls,), equally spaced in the logarithm from slightly below the box to slightly above."""
         return np.geomspace(self.thinnest / self.margin, self.thickest * self.margin, self.walls)
 
     @property
     def fold_depths(self) -> Array:
-        """Depths below the unloaded apex at which the edge of buckling is stored, (folds,)."""
+        """Depths (R0) below the unloaded apex at which the edge of buckling is stored, (folds,)."""
         return np.linspace(0.35, self.beyond, self.folds)
 
 
 class AtlasAxes(NamedTuple):
-    """The three directions of the tables."""
+    """The three axes of the tables: wall ratio (its logarithm), volume nu, depth w, as in `AtlasRecipe`."""
 
     wall: SplineAxis
     volume: SplineAxis
@@ -191,7 +191,7 @@ class AtlasAxes(NamedTuple):
 
 
 def axes(recipe: AtlasRecipe) -> AtlasAxes:
-    """Axes of a recipe; walls in their logarithm, cubic, with knots at the surveyed wall ratios."""
+    """Axes of a recipe; the walls are cubic in their logarithm, with knots at the solved wall ratios."""
     walls = recipe.wall_ratios
     return AtlasAxes(
         SplineAxis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
@@ -215,7 +215,7 @@ STORED = (*STRETCHES, "contact_radius", "von_mises", "fold", "inner_apex")
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Names of the tables whose maximum is the field."""
+    """Names of the tables whose greatest value is the field ``name`` of `FIELDS`."""
     return STRETCHES if name == "stretch" else (name,)
 
 
@@ -225,12 +225,12 @@ _MOST = 0.9
 
 
 def flattened(name: str, values: Array) -> Array:
-    """A field as it is tabulated, saturated: a face that turns over at a crease's tip has huge, meaningless strains."""
+    """A field as it is tabulated; strains and stresses saturate, being huge and meaningless at the tip of a crease."""
     return values / (values + _HALF) if name in _SATURATING else values
 
 
 def unflattened(name: str, values: Array) -> Array:
-    """Inverse of `flattened`; values are limited to 18."""
+    """Inverse of `flattened`; the result of a saturating field is at most 18."""
     if name not in _SATURATING:
         return values
     share = np.clip(values, 0.0, _MOST)

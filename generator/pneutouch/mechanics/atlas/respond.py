@@ -1,4 +1,4 @@
-"""Figures of many sensors at once from the atlas, by the same `response` functions as for every other curve."""
+"""Figures of many sensors at once from the atlas, by the functions of `response` as for every other curve."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pneutouch.mechanics.response import Figures, lines
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
-"""Reasons for the end of a range, by number in an `AtlasResponse`. The first is no event: the whole travel was used."""
+"""Reasons for the end of a range, numbered in an `AtlasResponse`; the first is no event: the whole travel is used."""
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
@@ -33,11 +33,11 @@ _WITHIN = 1.0e-8
 class AtlasResponse(NamedTuple):
     """Responses of n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
-    ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR of further travel; these states lie so
-    close to the edge of the table that they are less certain. range_end: mm of indentation. contact_radius: at
-    range_end. limit_pressure: of the limit point. Curves run from first contact to range_end in equal steps.
-    max_stretch: over the range, the free state included. Rows of impossible sensors (beyond the limit point, outside
-    the box) are NaN throughout.
+    ends: number in `ENDS`. near_buckling: the wall would buckle within `NEAR` of further travel, where the table is
+    less accurate. range_end: mm of indentation. contact_radius: at range_end. Curves run from first contact to
+    range_end in equal steps. max_stretch: greatest over the range, with the inflated state. Rows of sensors without a
+    curve (beyond the limit point, outside the box, range of no length) are NaN; limit_pressure is NaN only outside the
+    box.
     """
 
     lines: Figures[Array]
@@ -60,7 +60,7 @@ class AtlasResponse(NamedTuple):
 
     @classmethod
     def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
-        """Join the responses of several batches."""
+        """Responses of several batches, one after the other."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
         solved = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
         return cls(Figures(*solved), *columns)
@@ -176,7 +176,7 @@ def _read_off(
 
 
 def _near(press: AtlasPress, track: PressTrack) -> Flags:
-    """True if a press, extrapolated linearly beyond its end, would buckle within NEAR of further travel."""
+    """Mask (n,) of presses that, extrapolated linearly beyond their ends, would buckle within `NEAR`."""
     margin = np.where(track.margin[:, -1] > 0, track.margin[:, -1], 1.0)
     rate = track.point.by_height[:, -1] / margin / press.reach
     nu, height = track.nu[:, -1] + NEAR * rate, track.height[:, -1] - NEAR
@@ -191,7 +191,7 @@ def _margins(press: AtlasPress, track: PressTrack, stretch: Array, radius: Array
 
 
 def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins: Array) -> tuple[Array, Index]:
-    """Plate travel (R0) at which each range ends, and the reason as its number in `ENDS`."""
+    """Plate travel (R0) at which each range ends, and the number of the reason in `ENDS`, (n,) each."""
     broken = (margins > 0.0).any(axis=0) | ~track.ok
     hit = np.flatnonzero(broken.any(axis=1))
     end, ends = indentation[:, -1].copy(), np.full(len(press.batch), DEPTH)
@@ -210,11 +210,11 @@ def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins
 
 
 def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array], lost: Index) -> tuple[Array, Index]:
-    """Locate the first end of a range in a bracket of travels; the travel there, and the reason's number in `ENDS`.
+    """Travel at which a range first ends in a bracket of travels, and the number of the reason in `ENDS`, (n,) each.
 
-    ``lost`` (n,) is the reason why the press had no state at the bracket's end, `DEPTH` where it had one: solved from
-    elsewhere, a state there may just hold. Illinois variant of false position on the greatest margin; bisection where
-    there is no state.
+    ``lost`` (n,) is the reason why the press had no state at the bracket's end, `DEPTH` where it had one; it is used if
+    a solution from elsewhere just holds there. Illinois variant of false position on the greatest margin; bisection
+    where there is no state.
     """
     low, high = bracket
     before, _, _ = _worst(press, nu, low)
@@ -239,7 +239,7 @@ def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array], lost:
 
 
 def _worst(press: AtlasPress, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
-    """Greatest margin at plate travels (n,), infinite where there is no state; its reason; and the volume nu."""
+    """Greatest margin at plate travels (n,), inf without a state; number of its reason in `ENDS`; volume nu, (n,)."""
     height = press.apex - indentation
     solved = press.solve(nu, height)
     one = PressTrack(solved.nu, height, solved.point, solved.margin, solved.ok).each(lambda column: column[:, None])

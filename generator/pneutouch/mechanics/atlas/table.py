@@ -1,4 +1,4 @@
-"""Tables of the atlas, read once, and the states interpolated in them.
+"""Tables of the atlas, read once, and the states interpolated in them; nu as in `recipe.AtlasRecipe`.
 
 Also the first limit of free inflation over the wall ratio, limit point or break strain, for many domes at once.
 """
@@ -38,16 +38,16 @@ class AtlasPoint(NamedTuple):
     folded: Flags
 
     def each(self, change: Callable[[Any], Any]) -> AtlasPoint:
-        """Point with a function applied to every array."""
+        """Point with the function ``change`` applied to every array."""
         return AtlasPoint(*map(change, self))
 
 
 @dataclass(frozen=True)
 class AtlasSlices:
-    """Tables of the atlas at k wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume,
-    depth), support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex (k,): outer
-    apex height of the unloaded dome. fold_from (k,), fold_volume (k, folds): edge of buckling, see `survey._fold`:
-    least volume of an unbuckled wall at fold_depths, from depth fold_from on."""
+    """Tables at some wall ratios, numbered k: limit_volume, limit_pressure (walls,), apex (walls, volume), potential
+    (walls, volume, depth), support (walls, volume cells, depth cells), fields: (walls, volume, depth) by name.
+    rest_apex (walls,): outer apex height of the unloaded dome. fold_from (walls,), fold_volume (walls, folds): edge of
+    buckling, the least volume of an unbuckled wall at fold_depths, from depth fold_from on."""
 
     grid: AtlasAxes
     limit_volume: Array
@@ -62,7 +62,7 @@ class AtlasSlices:
     fields: dict[str, Array]
 
     def reach(self, k: Index) -> Array:
-        """Volume between rest and limit point at the slices k."""
+        """Volume (R0^3) between rest and limit point for walls k, (n,)."""
         values: Array = self.limit_volume[k] - REST_VOLUME
         return values
 
@@ -77,7 +77,7 @@ class AtlasSlices:
 
     @cached_property
     def _apex_windows(self) -> Array:
-        """Spline coefficients of the apex height in each cell, (k, volume cells, coefficients)."""
+        """Spline coefficients of the apex height in each cell, (walls, volume cells, coefficients)."""
         return np.lib.stride_tricks.sliding_window_view(self.apex, self.grid.volume.degree + 1, axis=1)
 
     def point(self, k: Index, nu: Array, height: Array, *, with_folded: bool = True) -> AtlasPoint:
@@ -106,12 +106,12 @@ class AtlasSlices:
 
     @cached_property
     def _windows(self) -> Array:
-        """Spline coefficients of the potential in each cell, (k, volume cells, depth cells, coefficients twice)."""
+        """Spline coefficients of the potential in each cell, (walls, volume cells, depth cells, coefficients twice)."""
         size = self.grid.volume.degree + 1, self.grid.depth.degree + 1
         return np.lib.stride_tricks.sliding_window_view(self.potential, size, axis=(1, 2))
 
     def folded(self, k: Index, nu: Array, height: Array) -> Flags:
-        """True if the wall has buckled before volumes nu and plate heights, (n,)."""
+        """Mask (n,) of the states, at volumes nu and plate heights (n,), before which the wall has buckled."""
         depth = self.rest_apex[k] - height
         deep = depth > self.fold_from[k]
         if not deep.any():
@@ -145,7 +145,7 @@ class AtlasSlices:
 
 
 class Atlas:
-    """Tables over all wall ratios, with the recipe they were made by."""
+    """Tables over all wall ratios, with the recipe by which they were made."""
 
     def __init__(self, tables: dict[str, Array], recipe: AtlasRecipe) -> None:
         self.recipe = recipe
@@ -153,11 +153,11 @@ class Atlas:
         self._grid = axes(recipe)
 
     def boxed(self, recipe: AtlasRecipe) -> Atlas:
-        """These tables with the box of another recipe; its coordinates must be the same."""
+        """An atlas with the same tables and another recipe, which may differ only in the box (limits of inputs)."""
         return Atlas(self._tables, recipe)
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
-        """Tables interpolated at wall ratios (k,) inside the box, with the named fields."""
+        """Tables interpolated at wall ratios (walls,) inside the box, with the fields ``names``."""
         grid = self._grid.wall
         cell, weight = grid.basis(np.log(wall_ratio))
         starts = np.flatnonzero(np.diff(cell, prepend=-1))
@@ -213,10 +213,10 @@ _RATIOS, _VOLUMES = 60, 91
 
 
 def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
-    """Driving pressure over the shear modulus at which an inflated dome meets its first limit, (n,).
+    """Driving pressures over the shear modulus at which inflated domes meet their first limit, (n,).
 
     The limit is the limit point, or the break stretch (n,) if the wall reaches it earlier. A wall ratio (n,) outside
-    the atlas has the limit of the nearest edge.
+    the box counts as the nearest one inside.
     """
     ratios, limit, stretch, pressure = _inflations()
     least = np.interp(wall_ratio, ratios, limit)
@@ -228,7 +228,7 @@ def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
 
 
 def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
-    """Pressure at which each wall ratio reaches the break stretch; NaN if the limit point comes first."""
+    """Pressure (mu) at which each wall ratio reaches the break stretch, (k,); NaN if the limit point comes first."""
     reached = stretch >= break_stretch
     after = np.maximum(reached.argmax(axis=1), 1)
     rows = np.arange(after.size)

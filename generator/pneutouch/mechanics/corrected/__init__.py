@@ -1,1 +1,1 @@
-"""The atlas corrected by the solid for another contact: over driving pressures, travels, and designs."""
+"""The atlas corrected by the solid for sensors that it does not cover: figures, curves, and figures of many designs."""

@@ -1,8 +1,8 @@
-"""Friction, other objects and other walls as a correction of the atlas: ratio of the solid's curves to its stand-in's.
+"""Correction of the atlas's curves for friction, other objects and other walls, by a ratio from the solid.
 
-The atlas presses a neo-Hookean wall with a frictionless plate, the stand-in. Its force and pressure rise are multiplied
-by the ratio of the solid's curve of the sensor to that of the stand-in, at the same travel and driving pressure; the
-pressure after injected air by the ratio of the two at the same volume. The ratio is
+The stand-in of a sensor has a neo-Hookean wall under a frictionless plate, which the atlas covers. The force and
+pressure rise that the atlas gives for it are multiplied by the ratio of the solid's curves for sensor and stand-in, at
+the same travel and driving pressure; the pressure after injected air by their ratio at the same volume. The ratio is
 computed for one sensor and taken as constant nearby. With friction, the logarithm of the force ratio changes by up to
 0.04 for a modulus 1.3 times as large, that of the sensitivity by up to 0.02
 (`tests/mechanics/test_corrected_curves.py`): a fit takes the ratio at its own estimate.
@@ -21,23 +21,23 @@ from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.units import KPA
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
-"""Coefficients of friction at which the solid is solved where friction is fitted."""
+"""Coefficients of friction at which the solid is solved if friction is fitted."""
 
 _STEPS = 28
 _GRAIN = 0.5 * KPA
-"""Driving pressures are rounded to multiples of this, MPa, and each multiple has one ratio."""
+"""Driving pressures (MPa) are rounded to multiples of this for ratios, so that fewer of them are solved."""
 
 
 @dataclass(frozen=True)
 class ContactRatio:
-    """Logarithms of force and rise under a contact over those under the frictionless plate.
+    """Logarithms of force and pressure rise of a sensor over those of its stand-in under the frictionless plate.
 
     Attributes:
         frictions: Coefficients of friction, ascending, (q,).
         pressures: Driving pressures, MPa, ascending, (p,).
         depths: Travels, mm, ascending, (m,).
         logs: Logarithms of the ratios of force and rise, (2, q, p, m).
-        ends: Travels up to which the wall is free of the ring that clamps its flange, mm, (p,).
+        ends: Travels up to which the wall is free of the ring that clamps its flange, mm, (p,); inf without a ring.
     """
 
     frictions: Array
@@ -70,21 +70,21 @@ class ContactRatio:
 
 
 _BEYOND, _FIRST = 1.05, 1e-3
-"""Travel of an end that is not reached, over the last one; least injected volume of a ratio, over the greatest."""
+"""Travel given for an end that is not reached, over the last travel; least injected volume of a ratio, over the
+greatest."""
 
 _RING = 0.01
-"""Share of the force by which a ring that the wall meets ends the ratio: our choice. Behind it the force rises within a
-few tenths of a millimetre to twice as much, and the place depends on every size."""
+"""Change of the logarithm of the force by the ring that ends the ratio: a choice. Beyond it the force doubles within a
+few tenths of a millimetre, at a place that depends on every size."""
 
 
 def contact_ratio(
     sensor: Sensor, frictions: tuple[float, ...], driving_pressures: Array, deepest: float
 ) -> ContactRatio:
-    """Ratio of a sensor with its object at coefficients of friction, near driving pressures (MPa) and to a travel (mm),
-    without the ring around its flange.
+    """Ratio of a sensor, without the ring around its flange, to its stand-in: with its object at coefficients of
+    friction (ascending), near driving pressures (MPa) and to the travel ``deepest`` (mm).
 
-    Raises ComputationError if the solid cannot press the sensor at any of the pressures.
-    """
+    Raises ComputationError if the solid cannot press the sensor, also with the ring, at any of the pressures."""
     grains = np.unique(np.round(driving_pressures / _GRAIN)) * _GRAIN
     whole = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)
     bare = whole if whole.dome.base is None else whole.replace(base=RigidBase())
@@ -110,23 +110,22 @@ def contact_ratio(
 
 
 def _parting(ringed: Array, free: Array, depths: Array) -> float:
-    """Last of the travels before the force with the ring parts from that without it, mm; beyond all where it does not.
-
-    Finite, so that the end at a driving pressure between two lies between theirs.
+    """Last of the travels ``depths`` (mm) before the force with the ring differs from that without it; `_BEYOND` times
+    the deepest if it does not: finite, so that ends can be interpolated between driving pressures.
     """
     apart = np.flatnonzero(np.abs(_log_ratio(ringed, free, depths)[0]) > _RING)
     return float(depths[max(apart[0] - 1, 0)]) if apart.size else _BEYOND * float(depths[-1])
 
 
 def injection_ratio(sensor: Sensor, volumes: Array) -> Array:
-    """Logarithm of the pressure after injected volumes (n,), mm3, over that of the `stand_in`, by the solid."""
+    """Logarithm (n,) of the pressure after injected volumes (n,; mm3) over that of the `stand_in`, by the solid."""
     some = np.maximum(volumes, _FIRST * float(volumes.max()))
     return np.asarray(np.log(_after_injection(sensor, some) / _after_injection(stand_in(sensor), some)))
 
 
 def _after_injection(sensor: Sensor, volumes: Array) -> Array:
-    """Pressures (n,), MPa, at which wall and gas are in equilibrium after injected volumes; beyond the end of the
-    inflation that of its end."""
+    """Pressures (n,; MPa) at which wall and gas are in equilibrium after injected volumes (n,; mm3 at ambient
+    pressure); beyond the end of the inflation that of its end."""
     from pneutouch.mechanics.models.solid import solid_result
 
     curve, gas = solid_result(sensor.replace(waves=0), np.zeros(0)).inflation, sensor.gas
@@ -136,8 +135,8 @@ def _after_injection(sensor: Sensor, volumes: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
-    """Travel, force and rise (3, n) by the solid at each of ascending pressures, without the highest ones that fail;
-    cached, because a fit and its checks need the same ones again."""
+    """Travel (mm), force (N) and rise (MPa), (3, n), by the solid at each of ascending pressures (MPa), without the
+    highest ones that fail; cached, because a fit and its checks need the same ones again."""
     from pneutouch.mechanics.models.solid import solid_states
 
     for count in range(len(pressures), 0, -1):
@@ -150,7 +149,7 @@ def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
 
 
 def _log_ratio(contact: Array, plate: Array, depths: Array) -> Array:
-    """Logarithms of the ratios of force and rise (2, m) of two presses at travels; constant beyond the shorter one."""
+    """Logarithms (2, m) of the ratios of force and rise of two presses at travels (m,); constant beyond the shorter."""
     at = np.minimum(depths, min(contact[0, -1], plate[0, -1]))
     over, under = (np.array([np.interp(at, one[0], row) for row in one[1:]]) for one in (contact, plate))
     return np.asarray(np.log(over / under))

@@ -1,9 +1,8 @@
-"""Figures under a contact outside the atlas: figures of the atlas times factors that the solid gave at some sensors.
+"""Figures of many designs with a contact that the atlas does not cover: those of the atlas times interpolated factors.
 
-Space mapping (Bandler et al., IEEE Trans. Microwave Theory Tech. 42 (1994) 2536, doi:10.1109/22.339794): the cheap
-model is corrected to agree with the accurate model where that was solved, and is searched again.
-
-Also the solid's state of a candidate under such a contact, in the form of an atlas response.
+The solid gives the factors for some of the sensors. Space mapping (Bandler et al., IEEE Trans. Microwave Theory Tech.
+42 (1994) 2536, doi:10.1109/22.339794): the cheap model is corrected to agree with the accurate model where that was
+solved, and is searched again. Also a state of the solid in the form of an atlas response.
 """
 
 from __future__ import annotations
@@ -19,9 +18,9 @@ from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.response import Figures
 
 _LENGTHS = np.array([0.3, 0.25, 0.5, 1.0])
-"""Unit of distance of each column of `places`."""
+"""Lengths by which the columns of `places` are divided."""
 _SAME = 1e-9
-"""Distance below which two samples are the same."""
+"""Distance below which two places are the same."""
 
 
 def places(batch: SensorBatch, response: AtlasResponse) -> Array:
@@ -65,10 +64,10 @@ class ContactFactors(NamedTuple):
         return ContactFactors(np.concatenate([self.places, place]), np.concatenate([self.logs, log]))
 
     def at(self, where: Array) -> Array:
-        """Factors (n, 5) at places (n, 4).
+        """Factors (n, 5) on `figures_of` at places ``where`` (n, 4).
 
-        Interpolated by the radial basis function r plus a constant, which is linear between two samples; limited to the
-        range of the samples.
+        Their logarithms are interpolated by the radial basis function r (the distance) plus a constant, which is linear
+        between two samples, and limited to the range of the samples.
         """
         count = len(self.places)
         if count == 0:
@@ -81,7 +80,7 @@ class ContactFactors(NamedTuple):
         return np.asarray(np.exp(np.clip(logs, self.logs.min(axis=0), self.logs.max(axis=0))))
 
     def corrected(self, batch: SensorBatch, response: AtlasResponse) -> AtlasResponse:
-        """Responses of the atlas multiplied by the factors at their places."""
+        """Responses of the atlas for ``batch``, multiplied by the factors at their places."""
         known = np.isfinite(response.limit_pressure)
         factors = np.full((len(batch), self.logs.shape[1]), np.nan)
         factors[known] = self.at(places(batch, response)[known])
@@ -110,9 +109,9 @@ def _distances(a: Array, b: Array) -> Array:
 
 
 class ContactFigures(NamedTuple):
-    """A candidate under a contact that the atlas does not cover; its figures are those of the solid.
+    """Facts about a candidate with a contact that the atlas does not cover; its figures are those of the solid.
 
-    ends_with: event that ends its range. plate_kPa_per_N: sensitivity by the atlas, under the frictionless plate.
+    ends_with: reason for the end of its range. plate_kPa_per_N: sensitivity by the atlas, under the frictionless plate.
     rounds: number of searches until the candidate was found.
     """
 
@@ -122,14 +121,14 @@ class ContactFigures(NamedTuple):
 
 
 def ending(state: SensorState) -> str:
-    """Reason for the end of a state's range: the kind of an event, or the depth."""
+    """Reason for the end of a state's range: the kind of its first event that ends it, or "depth"."""
     return next((event.kind for event in state.events if event.ends_range), ENDS[DEPTH])
 
 
 def solid_response(state: SensorState, atlas: AtlasResponse) -> AtlasResponse | None:
-    """A state of the solid as a response of one row; the limit point is the atlas's, because no contact changes it.
-
-    None if the state has no figures. An end of another kind than `ENDS` counts as buckling, which no margin uses.
+    """A state of the solid as an atlas response of one row; the limit pressure is that in ``atlas``, on which contact
+    has no effect. None if the state has no figures. A reason for the range's end that is not in `ENDS` counts as
+    buckling.
     """
     figures, kind = state.figures, ending(state)
     if figures is None:

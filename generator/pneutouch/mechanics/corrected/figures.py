@@ -1,7 +1,7 @@
-"""The atlas corrected by the solid: figures of a sensor under another contact than the frictionless plate.
+"""The atlas corrected by the solid: figures of a sensor under a contact other than the frictionless plate.
 
-The solid is solved at as few driving pressures as suffice. The logarithm of the ratio of its figures to those of the
-atlas under the plate is interpolated linearly between them.
+The solid is solved at a few driving pressures. The logarithm of the ratio of its figures to those of the atlas under
+the plate is interpolated linearly between these pressures.
 """
 
 from collections.abc import Sequence
@@ -19,8 +19,8 @@ from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 
 GRIPS = 2.0
-"""Coefficient of friction from which the contact is treated as gripping: above it the sensitivity of the paper's sensor
-in its resins changes by less than 0.5 % (`tests/mechanics/test_corrected_curves.py`)."""
+"""Coefficient of friction from which the contact counts as gripping: above it the sensitivity of the paper's sensor in
+its resins changes by less than 0.5 % (`tests/mechanics/test_corrected_curves.py`)."""
 
 SAME = 1e-6
 """Driving pressures closer to each other than this, MPa, count as the same."""
@@ -28,8 +28,8 @@ SAME = 1e-6
 
 @lru_cache(maxsize=128)
 def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
-    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
-    cannot solve the highest. Cached, because chart, budget and curves of a datasheet need the same figures."""
+    """Logarithms (figures, n) of the `FIGURES` by the solid at ascending driving pressures (MPa), read-only; all NaN if
+    it cannot solve one of them. Cached, because chart, budget and curves of a datasheet need the same figures."""
     from pneutouch.mechanics.models.solid import solid_states
 
     try:
@@ -41,8 +41,8 @@ def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
 
 
 def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
-    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. A ``correction`` that the
-    states contain is divided out."""
+    """Logarithms (figures, n) of the `FIGURES` of solved states; NaN for those that do not depend on the contact or are
+    missing. A ``correction`` that the states contain is divided out; None: they contain none."""
     rows = np.full((len(FIGURES), len(states)), np.nan)
     for k, state in enumerate(states):
         if state.figures is not None:
@@ -56,7 +56,7 @@ def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | N
 def solved_at(
     sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = 3
 ) -> tuple[Array, Array]:
-    """Driving pressures (k,) to interpolate to ``pressures``, and the logarithms of the figures there (figures, k).
+    """Driving pressures (k,; MPa) from which ``pressures`` are interpolated, and the figures' logarithms (figures, k).
 
     The given ``states`` of the sensor are used. Of the pressures outside their range the first and the last are solved,
     without the highest ones that fail; then the middle of the range, if fewer than ``least`` are known.
@@ -85,8 +85,8 @@ def _among(pressure: float, others: dict[float, Array]) -> bool:
 
 
 def between(where: Array, at: Array, values: Array) -> Array:
-    """Values (figures, k) at driving pressures ``at`` (k,), interpolated linearly to ``where`` (n,); NaN outside the
-    range of the finite values."""
+    """Values (figures, n) at driving pressures ``where`` (n,), linear between ``values`` (figures, k) at ``at`` (k,);
+    NaN outside the range of the finite values."""
     rows = np.full((len(values), where.size), np.nan)
     for row, line in zip(rows, values, strict=True):
         good = np.isfinite(line)
@@ -100,8 +100,8 @@ def between(where: Array, at: Array, values: Array) -> Array:
 class CorrectedAtlas:
     """Figures of one sensor under its contact at n ascending driving pressures, MPa.
 
-    ``states`` are solutions of the solid that are available already, at these or other pressures; more are solved, up
-    to ``least`` in total. Between them the logarithm of the figures over those under the plate is linear.
+    ``states`` are solutions of the solid that are available already, at these or other pressures; more are solved as in
+    `solved_at`. Between them the logarithm of the figures over those under the plate is linear.
     """
 
     sensor: Sensor

@@ -1,6 +1,6 @@
 """Positions as Fourier sums around the axis, and their values at equally spaced angles.
 
-Linear maps from nodal coefficients to fields at points of the meridian and angles around the axis.
+Also linear maps from nodal coefficients to fields at points of the meridian and angles around the axis.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from pneutouch.arrays import Array, Index
 
 AngleFunction = Callable[[Array], Array]
-"""An even or odd function of the phase, the angle times the number of the harmonic."""
+"""An even or odd function of the phase: the angle times the number m of the harmonic."""
 
 RADIAL, AXIAL, AROUND = range(3)
 """Components of a position: radial, axial and circumferential, at the angle of the material point."""
@@ -45,7 +45,7 @@ class Harmonics:
 
     @property
     def around(self) -> Index:
-        """Columns of s_m, m above 0."""
+        """Columns of the coefficients s_m, m above 0, (n,)."""
         return 4 + 3 * np.arange(self.waves)
 
     @cached_property
@@ -65,11 +65,11 @@ class Harmonics:
         return self._midpoints(self.waves + 1)
 
     def values(self, angles: Array) -> Array:
-        """Matrices that map coefficients to the components at angles, (n_angles, 3, columns)."""
+        """Matrices (n_angles, 3, columns) that map a node's coefficients to its position's components at angles."""
         return self._rows(angles, np.cos, np.sin)
 
     def slopes(self, angles: Array) -> Array:
-        """Matrices that map coefficients to the derivatives of the components by the angle."""
+        """Matrices (n_angles, 3, columns) that map coefficients to the components' derivatives by the angle."""
 
         def falling(x: Array) -> Array:
             return np.asarray(-np.sin(x))
@@ -77,15 +77,15 @@ class Harmonics:
         return self._rows(angles, falling, np.cos, by_order=True)
 
     def turned(self, angles: Array) -> Array:
-        """Matrices that map coefficients to the components of the position's derivative by the angle, including the
-        rotation of the base vectors."""
+        """Matrices (n_angles, 3, columns) that map coefficients to the components of the position's derivative by the
+        angle, with the rotation of the base vectors."""
         out, values = self.slopes(angles), self.values(angles)
         out[:, RADIAL] -= values[:, AROUND]
         out[:, AROUND] += values[:, RADIAL]
         return out
 
     def cartesian(self, angles: Array) -> Array:
-        """Matrices that map coefficients to (x, y, z), x in the symmetry plane at angle 0, (n_angles, 3, columns)."""
+        """Matrices (n_angles, 3, columns) that map coefficients to (x, y, z), x in the symmetry plane at angle 0."""
         values = self.values(angles)
         cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
         x = cos * values[:, RADIAL] - sin * values[:, AROUND]
@@ -93,13 +93,13 @@ class Harmonics:
         return np.stack([x, y, values[:, AXIAL]], axis=1)
 
     def cosines(self, angles: Array) -> Array:
-        """Cosines to the order M at equally spaced angles, orthonormal under the mean over them, multiplied by the
-        weights of that mean; (n + 1, n_angles)."""
+        """Cosines (n + 1, n_angles) to the order M at equally spaced angles, orthonormal under the mean over them and
+        divided by the number of angles."""
         m = self._numbers[:, None]
         return np.asarray(np.where(m > 0, np.sqrt(2.0), 1.0) * np.cos(m * angles) / angles.size)
 
     def lifted(self, positions: Array) -> Array:
-        """Coefficients (n, columns) of axisymmetric positions, or of fewer harmonics, (n, fewer columns)."""
+        """Coefficients (n_nodes, columns) from axisymmetric positions (n_nodes, 2) or those of fewer harmonics."""
         out = np.zeros((positions.shape[0], self.columns))
         out[:, : positions.shape[1]] = positions
         return out
@@ -122,18 +122,18 @@ class Harmonics:
 
 
 class FieldGroup(NamedTuple):
-    """Fields with one shape function in the meridian: ``shape`` (n_blocks, n_points, n_nodes), without its first axis
-    if all blocks share it, and ``rows`` (n_angles, n_fields, columns) of factors on the coefficients."""
+    """Fields with the same shape functions in the meridian: ``shape`` (n_blocks, n_points, n_nodes), without the first
+    axis if all blocks share it, and ``rows`` (n_angles, n_fields, columns), the factors on the coefficients."""
 
     shape: Array
     rows: Array
 
 
 class FieldOperator:
-    """Maps nodal coefficients to fields at the points and angles of cells or edges, and derivatives by fields to nodes.
+    """Maps nodal coefficients to fields at the points and angles of cells or edges (blocks), and derivatives back.
 
-    ``nodes`` (n_blocks, n_nodes); ``signs`` (n_mesh_nodes, columns) is -1 for coefficients tied to the negative of
-    another coefficient, in forces and stiffnesses.
+    ``nodes`` (n_blocks, n_nodes): nodes of each block; ``signs`` (n_mesh_nodes, columns): -1 for coefficients that
+    equal minus another coefficient, whose forces and stiffnesses change sign.
     """
 
     def __init__(self, groups: list[FieldGroup], nodes: Index, signs: Array) -> None:
@@ -152,7 +152,7 @@ class FieldOperator:
         self._signs = sign[self._turned]
 
     def fields(self, x: Array) -> Array:
-        """Fields (n_blocks, n_points, n_angles, n_fields) of coefficients x (n_mesh_nodes, columns)."""
+        """Fields (n_blocks, n_points, n_angles, n_fields) for coefficients x (n_mesh_nodes, columns)."""
         points, angles = self._count
         blocks = self._nodes.shape[0]
         along = np.matmul(self._flat, x[self._nodes]).reshape(blocks, points, len(self._groups), -1)
@@ -163,7 +163,7 @@ class FieldOperator:
         return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=3)
 
     def forces(self, by_field: Array) -> Array:
-        """Derivative by the nodal coefficients, (n_blocks, n_nodes columns), from the derivative by the fields."""
+        """Derivative (n_blocks, n_nodes * columns) by the nodal coefficients, from that by the fields."""
         blocks, points = by_field.shape[:2]
         parts = [
             by_field[..., a:b].reshape(blocks * points, -1) @ rows
@@ -175,8 +175,8 @@ class FieldOperator:
         return np.asarray(out)
 
     def stiffness(self, by_fields: Array) -> Array:
-        """Second derivative by the coefficients, (n_blocks, n, n) with n nodes times columns, from the second
-        derivative by the fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
+        """Second derivative (n_blocks, size, size) by the coefficients, size = n_nodes * columns, from that by the
+        fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
         blocks, points = by_fields.shape[:2]
         groups, width = len(self._groups), self.columns
         inner = np.empty((blocks, points, groups, width, width, groups))

@@ -1,7 +1,7 @@
 """Coulomb friction of a wall without rotational symmetry: the solid's law with two directions along the surface.
 
-A spring holds each point in the tangent plane of the object; its traction is mapped back to the disc whose radius is
-the coefficient times the normal traction. Tractions and slips have two components along `tangents`.
+A spring holds each point in the tangent plane of the object; its traction is limited to the coefficient times the
+normal traction. Tractions and slips have two components along `tangents`; n is the number of nodes of an edge.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 
 def tangents(slope: Array) -> Array:
-    """Two perpendicular unit tangents of a surface with slopes (..., 2), the first in the plane of x and z; (..., 2,
-    3)."""
+    """Two perpendicular unit tangents (..., 2, 3) of a surface with slopes (..., 2) by x and y, the first in the plane
+    of x and z."""
     by_x, by_y = slope[..., X], slope[..., Y]
     first, secant, none = np.hypot(1.0, by_x), secants(slope), np.zeros_like(by_x)
     along = np.stack([1.0 / first, none, by_x / first], axis=-1)
@@ -35,7 +35,7 @@ def secants(slope: Array) -> Array:
 
 
 def lengths(vectors: Array) -> Array:
-    """Lengths of vectors (..., 2)."""
+    """Lengths (...) of vectors (..., 2)."""
     return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
@@ -46,17 +46,17 @@ def directions(vectors: Array) -> Array:
 
 
 def clipped(trial: Array, cap: Array) -> Array:
-    """Tractions (..., 2) mapped back to discs of radii cap (...)."""
+    """Tractions ``trial`` (..., 2), shortened to the length ``cap`` (...) where they are longer."""
     size = lengths(trial)
     share = np.divide(cap, size, out=np.ones_like(size), where=size > cap)
     return np.asarray(trial * share[..., None])
 
 
 def springs(sticking: Flags, direction: Array, turn: Array) -> Array:
-    """Derivative of the traction by the slip over the spring's stiffness, (..., 2, 2), symmetric.
+    """Derivative of the traction by the slip, over the spring's stiffness, (..., 2, 2), symmetric.
 
-    direction: traction direction of sliding points, else zero, (..., 2).  turn: traction limit of sliding points over
-    the traction of an unlimited spring, which is the share of the spring stiffness left across the direction.
+    direction: (..., 2), direction of the traction of sliding points, else zero. turn: (...), limit of a sliding point's
+    traction over the traction without limit: the share of the spring's stiffness left across the direction.
     """
     kept = np.where(sticking, 1.0, np.where(direction.any(axis=-1), turn, 0.0))
     across = np.where(sticking, 0.0, turn)[..., None, None] * direction[..., :, None] * direction[..., None, :]
@@ -66,8 +66,8 @@ def springs(sticking: Flags, direction: Array, turn: Array) -> Array:
 @dataclass(frozen=True)
 class SurfacePoints(FrictionPoints):
     """Friction at points and angles of the outer wall: ``traction`` and ``slip`` (n_edges, n_points, n_angles, 2) along
-    `tangents`, positive where the spring pulls the wall back; ``slope`` of the same shape by x and y; the other fields
-    without the last axis."""
+    `tangents`; ``slope`` of the same shape, by x and y; the other fields of `FrictionPoints` without the last axis. A
+    traction is positive along its tangent where the spring pulls the wall back."""
 
     @property
     def secant(self) -> Array:
@@ -85,7 +85,7 @@ class SurfacePoints(FrictionPoints):
         return lengths(self.slip)
 
     def path(self, past: FrictionPoints) -> Array:
-        """Slip in the direction of an earlier traction."""
+        """Part of the slip in the direction of the traction in ``past``."""
         return np.asarray(np.einsum("...i,...i->...", directions(past.traction), self.slip))
 
     @property
@@ -95,21 +95,21 @@ class SurfacePoints(FrictionPoints):
 
     @property
     def load(self) -> Array:
-        """Tractions in space, (..., 3)."""
+        """Tractions as vectors (x, y, z), (..., 3)."""
         return in_space(self.traction, self.slope)
 
 
 def in_space(vectors: Array, slope: Array) -> Array:
-    """Vectors (..., 2) by the `tangents` of slopes as (x, y, z)."""
+    """Vectors (x, y, z), (..., 3), from components (..., 2) along the `tangents` of slopes."""
     return np.asarray(np.einsum("...i,...ij->...j", vectors, tangents(slope)))
 
 
 @dataclass(frozen=True)
 class SurfaceFriction(FrictionStep):
     """Friction for one position of the object, displaced by ``along`` in x: ``rest`` (n_edges, n_points, n_angles, 2)
-    are the places (x, y) relative to the object at which the points rest or first touch.
+    are the places (x, y) relative to the object at which the points rest or will first touch.
 
-    drift: velocity of the object in space along its path, (3,).
+    drift: (3,), derivative of the object's position by the path parameter.
     """
 
     contact: HarmonicContact
@@ -118,22 +118,22 @@ class SurfaceFriction(FrictionStep):
     drift: Array
 
     def slip(self, x: Array, slope: Array) -> Array:
-        """Displacement of the points from their places of rest, along the tangents of given slopes."""
+        """Displacement of the points at coefficients x from their places of rest, along `tangents` of ``slope``."""
         at = self.rest + np.array([self.along, 0.0])
         height = self.plate.over(at[..., X], at[..., Y]).height
         gone = self.contact.points(x) - np.concatenate([at, height[..., None]], axis=-1)
         return np.asarray(np.einsum("...ij,...j->...i", tangents(slope), gone))
 
     def change(self, move: Array, slope: Array) -> Array:
-        """Change of `slip` with a displacement of the coefficients (n_nodes, columns)."""
+        """Change of `slip` by a displacement of the coefficients (n_nodes, columns)."""
         return np.asarray(np.einsum("...ij,...j->...i", tangents(slope), self.contact.points(move)))
 
     def cap(self, traction: Array, slope: Array) -> Array:
-        """Largest tangential traction under given vertical tractions per area at rest; 0 without contact."""
+        """Largest tangential traction for given vertical tractions per area at rest; 0 without contact."""
         return self.coefficient * np.maximum(traction, 0.0) * secants(slope)
 
     def at(self, x: Array, touch: ContactEvaluation) -> SurfacePoints:
-        """Return mapping at coefficients x (n_nodes, columns) with the contact evaluated there."""
+        """Friction at coefficients x (n_nodes, columns) by return mapping; ``touch`` is the contact there."""
         cap, slip = self.cap(touch.traction, touch.slope), self.slip(x, touch.slope)
         trial = self.stiffness * slip
         touching = touch.traction > 0.0
@@ -141,12 +141,12 @@ class SurfaceFriction(FrictionStep):
         return SurfacePoints(clipped(trial, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
 
     def turn(self, points: FrictionPoints) -> Array:
-        """Share of the spring stiffness of sliding points that is left across their slip; 0 for other points."""
+        """Share of the spring's stiffness that a sliding point keeps across its slip; 0 for other points."""
         trial = self.stiffness * points.travel
         return np.divide(points.cap, trial, out=np.zeros_like(trial), where=points.sliding)
 
     def force(self, traction: Array, slope: Array) -> Array:
-        """Force on the outer edges (n_edges, n columns) of tractions along the surface: gradient of the energy."""
+        """Gradient of the energy by outer edges (n_edges, n * columns) for tractions along the surface."""
         return self.contact.load_forces(in_space(traction, slope))
 
     def spring_form(self, slope: Array, sticking: Flags, direction: Array, turn: Array) -> Array:
@@ -156,9 +156,9 @@ class SurfaceFriction(FrictionStep):
         return np.asarray(np.matmul(np.swapaxes(frame, -1, -2), np.matmul(held, frame)))
 
     def sliding_form(self, load: Array, touch: ContactEvaluation, direction: Array) -> Array | None:
-        """Unsymmetric part of the derivative, (..., 3, 3), or None: the traction of sliding points (with nonzero
-        ``direction`` (..., 2)) follows the normal traction, and the friction traction ``load`` of all points turns with
-        the surface."""
+        """Unsymmetric part of the derivative, (..., 3, 3): the traction of sliding points (nonzero ``direction``, (...,
+        2)) follows the normal traction, and the friction traction ``load`` (..., 3) of all points turns with the
+        surface. None if no point slides and the surface is flat."""
         touching = touch.traction > 0.0
         bent = bool((touch.curve.any(axis=(-1, -2)) & touching).any())
         if not (direction.any() or bent):
@@ -174,11 +174,11 @@ class SurfaceFriction(FrictionStep):
         return form
 
     def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
-        """Friction term with the traction limits and slopes of given points held."""
+        """Friction as an energy term, with the traction limits and slopes held at those of ``points``."""
         return SurfaceFrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Places (x, y) at which the points rest after the step, relative to the object; NaN without contact."""
+        """Places (x, y), relative to the object, at which the points rest after the step; NaN without contact."""
         assert isinstance(points, SurfacePoints)
         place = self.contact.points(x)[..., :Z] - points.load[..., :Z] / self.stiffness - [self.along, 0.0]
         sliding, sticking = points.sliding[..., None], points.sticking[..., None]
@@ -186,12 +186,12 @@ class SurfaceFriction(FrictionStep):
 
 
 class SurfaceFrictionTerm(FrictionTerm):
-    """Friction with the traction limits and the slopes held: the pseudo-potential of a step."""
+    """Friction with the traction limits and the slopes held: the pseudo-potential of a step, as in `FrictionTerm`."""
 
     step: SurfaceFriction
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, plus the limited traction times the slip beyond the limit."""
+        """Energy stored in the springs, plus the traction limit times the slip beyond the limit, mu R0^3."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = clipped(trial, self.held.cap)
         work = np.einsum("...i,...i->...", bears, trial - 0.5 * bears)

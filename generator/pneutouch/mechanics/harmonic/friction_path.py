@@ -1,7 +1,6 @@
-"""Path following of equilibria under an object in space with friction: down, then sideways.
+"""Path following with friction and harmonics: the object comes down, and can then move sideways.
 
-The object moves sideways at the height to which it was pressed, in the plane of symmetry, and friction drags the wall
-along.
+It moves sideways in the plane of symmetry, at the height to which it was pressed, and friction drags the wall along.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ from pneutouch.mechanics.solid.friction_path import FrictionFollower, approach
 from pneutouch.mechanics.solid.newton import NewtonFailure
 
 MOST_FAILED = 600
-"""Total Newton steps of failed solves after which a path is given up: 25 solves that do not converge, each of which may
-cost more than the whole path; sound paths of random scenes needed up to 288."""
+"""Number of Newton steps in a path's failed solves, together, after which it is given up: those of 25 solves, each of
+which may cost more than the whole path; paths of random scenes that succeeded needed up to 288."""
 
 
 @dataclass(frozen=True)
 class SlidObject(Surface):
-    """A surface displaced by ``travel`` along x at constant height, backwards if ``sense`` is -1.
+    """The object ``body`` displaced by ``travel`` along x (``sense`` 1) or -x (-1), at constant height; in R0.
 
     Its `height` is the travel, because `PathFollower` uses the height as path parameter.
     """
@@ -42,12 +41,12 @@ class SlidObject(Surface):
 
     @property
     def along(self) -> float:
-        """Displacement in x."""
+        """Displacement in x, with its sign."""
         return self.sense * self.travel
 
     @property
     def height(self) -> float:
-        """The travel."""
+        """The travel, in place of the height."""
         return self.travel
 
     @property
@@ -56,20 +55,20 @@ class SlidObject(Surface):
         return self.body.span
 
     def at(self, height: float) -> SlidObject:
-        """This body after another travel."""
+        """The object after the travel ``height``."""
         return replace(self, travel=height)
 
     def distance(self, x: Array, y: Array) -> Array:
-        """Distance from the axis of the body."""
+        """Distance of points from the axis of the displaced body."""
         return self.body.distance(x - self.along, y)
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Underside of the body at points x, y of one shape."""
+        """Underside of the displaced body at points x, y, arrays of one shape."""
         return self.body.over(x - self.along, y)
 
 
 class SurfaceFrictionFollower(FrictionFollower):
-    """A `FrictionFollower` of a wall with harmonics."""
+    """A `FrictionFollower` for a wall with harmonics; ``height`` is the height of the object, or its travel."""
 
     _plate: Surface
     #: Newton steps of the path's failed solves.
@@ -88,7 +87,7 @@ class SurfaceFrictionFollower(FrictionFollower):
 
     @property
     def _drift(self) -> Array:
-        """Velocity of the object along its path."""
+        """Derivative (3,) of the object's position by the path parameter."""
         return np.array([self._plate.sense, 0.0, 0.0] if isinstance(self._plate, SlidObject) else [0.0, 0.0, 1.0])
 
     def slid(self, sense: float) -> Self:
@@ -102,13 +101,13 @@ class SurfaceFrictionFollower(FrictionFollower):
 
     @property
     def given_up(self) -> str | None:
-        """Reason why no further solves are tried after a failure, or None."""
+        """Reason why no more solves are tried after a failure; None: they are tried."""
         if self._failed < MOST_FAILED:
             return None
         return f"solves failed again and again, in {self._failed} Newton steps together"
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """State at a path parameter ahead, or the failure; the state is not added to the path."""
+        """State at a path parameter, or the failure, whose Newton steps are counted; the path is not changed."""
         solved = super().solve(height)
         if isinstance(solved, NewtonFailure):
             self._failed += solved.iterations
@@ -123,7 +122,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return SurfaceFrictionSolver(replace(self._bare, plate=plate), step, self._sides)
 
     def _towards(self, height: float) -> SurfaceFrictionSolver:
-        """Solver of the step to a path parameter, with the tractions predicted along the path."""
+        """Solver of the step to a path parameter; with harmonics it begins with tractions predicted by the path."""
         solver = super()._towards(height)
         assert isinstance(solver, SurfaceFrictionSolver)
         if self.here.state.x.shape[1] > 2:
@@ -131,7 +130,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return solver
 
     def _foreseen(self, height: float) -> PointTractions | None:
-        """Tractions predicted at a path parameter with the rates of the last state; None at first contact."""
+        """Tractions predicted at a path parameter with the last state's rates; None without rates or contact there."""
         here = self.here
         touch = here.state.touch
         assert touch is not None and here.friction is not None
@@ -147,16 +146,17 @@ class SurfaceFrictionFollower(FrictionFollower):
         return PointTractions(normal, np.where(touching[..., None], trial, 0.0))
 
     def _places(self, x: Array) -> Array:
-        """Positions (x, y) of wall points from the object at the last state, (n_edges, n_points, n_angles, 2)."""
+        """Places (x, y) of wall points relative to the object at the last state, (n_edges, n_points, n_angles, 2)."""
         along = self._plate.at(self.here.height).along if isinstance(self._plate, SlidObject) else 0.0
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 
     def _signs(self) -> None:
-        """Discard the directions of slip: a point that comes into contact does not inherit a neighbour's."""
+        """No signs of slip: a point that comes into contact does not take over the direction of a neighbour's slip."""
         return
 
     def _ahead(self, height: float) -> Array:
-        """Predicted (x, y) of wall points at a path parameter, or where they touch before it, as in the solid."""
+        """Predicted places (x, y) relative to the object of wall points at a path parameter, or where they touch
+        before, as in `FrictionFollower`."""
         here, travel = self.here, height - self.here.height
         place = self._places(here.state.x)
         touch = here.state.touch
@@ -168,7 +168,7 @@ class SurfaceFrictionFollower(FrictionFollower):
 
 
 def held_back(state: PlateState) -> Array | float:
-    """Tractions of friction in space at a state, (n_edges, n_points, n_angles, 3); 0 without friction."""
+    """Friction tractions (x, y, z) at a state, (n_edges, n_points, n_angles, 3); 0 without friction."""
     if state.friction is None:
         return 0.0
     points = state.friction.points
@@ -202,11 +202,11 @@ class ShearState:
 
 @dataclass(frozen=True)
 class ShearPath:
-    """States at equal steps of the travel, from the end of the press on.
+    """States at equal steps of the travel, from the end of the press on; none after an incomplete press.
 
-    stiffness: initial slope of the force opposing the travel, with all points sticking, N/mm.  slips_from: travel of
-    the first solved state at which all points slide, or None.  ended: reason why the path ended early, or None.
-    """
+    stiffness: initial slope, N/mm, of the sideways force over the travel, with all points sticking; None without
+    states. slips_from: travel of the first solved state at which all points slide; None: some stick. ended: reason why
+    the path ended early; None if it did not."""
 
     states: list[ShearState]
     stiffness: float | None
@@ -215,14 +215,14 @@ class ShearPath:
 
     @property
     def peak(self) -> float | None:
-        """Greatest sideways force opposing the travel, N, with its sign; None with fewer than two states."""
+        """Greatest sideways force against the travel, N, with its sign; None with fewer than two states."""
         if len(self.states) < 2:
             return None
         sense = np.sign(self.states[-1].travel)
         return float(min(sense * s.sideways for s in self.states)) * float(sense)
 
     def column(self, name: str) -> Array:
-        """One field of every state, (n_states,)."""
+        """The field ``name`` of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
 
 
@@ -232,7 +232,7 @@ def not_sheared() -> ShearPath:
 
 
 def shear(pressed: SurfaceFrictionFollower, travel: float, driving_pressure: float) -> ShearPath:
-    """Shear from the last state of a press, by a travel of the object along x (mm, not zero); pressure in MPa."""
+    """Path from the last state of a press while the object moves by ``travel`` along x (mm, not 0); pressure in MPa."""
     length = pressed.here.scene.solid.length
     follower = pressed.slid(float(np.sign(travel)))
     recorder = _ShearRecorder(follower, driving_pressure)
@@ -257,14 +257,14 @@ def shear(pressed: SurfaceFrictionFollower, travel: float, driving_pressure: flo
 
 
 def _share(load: Array, points: FrictionPoints) -> float:
-    """Share of a load carried by sliding points, exactly 1 if none sticks."""
+    """Share of ``load`` (n_edges, n_points, n_angles) carried by sliding points, exactly 1 if none sticks."""
     if not points.sticking.any():
         return 1.0
     return float(load[points.sliding].sum()) / float(load.sum())
 
 
 class _ShearRecorder:
-    """Converts solver states to states with dimensions."""
+    """Converts the solver's states to mm, N and MPa."""
 
     def __init__(self, follower: SurfaceFrictionFollower, driving_pressure: float) -> None:
         self._solid, self._driving = follower.here.scene.solid, driving_pressure
@@ -273,11 +273,11 @@ class _ShearRecorder:
         self._object = plate
 
     def travel(self, state: PlateState) -> float:
-        """Travel along x, mm."""
+        """Travel of the object along x at a state, mm."""
         return self._object.at(state.height).along * self._solid.length
 
     def state(self, state: PlateState) -> ShearState:
-        """Reported figures of one converged state."""
+        """A converged state of the solver in mm, N and MPa."""
         contact, touch, friction = self._solid.contact, state.state.touch, state.friction
         assert touch is not None and friction is not None and isinstance(contact, HarmonicContact)
         length, mu = self._solid.length, self._solid.mu

@@ -1,4 +1,4 @@
-"""Newton's steps with friction in space: touching, sticking and sliding are settled in a linear model, as in the solid.
+"""Newton steps with friction and harmonics: touching, sticking and sliding are settled in a linear model as in `solid`.
 
 A sliding point keeps the direction in which it was found to slide; across it, a share of its spring stiffness is left.
 The directions turn from one Newton step to the next.
@@ -53,7 +53,7 @@ class SurfaceStatus(PointStatus):
         return np.asarray(np.einsum("...i,...i->...", self.sign, other.sign) < 0.0)
 
     def then(self, new: PointStatus) -> SurfaceStatus:
-        """Status to try after this one led to another: directions are kept unless they would be reversed."""
+        """Status to try next if solving with this one gave ``new``: directions are kept; reversed points stick."""
         assert isinstance(new, SurfaceStatus)
         both, back = self.sliding & new.sliding, self._reversed(new)
         sign = np.where(both[..., None], self.sign, new.sign) * ~back[..., None]
@@ -70,8 +70,8 @@ class SurfaceStatus(PointStatus):
 class SurfaceLinearContact(LinearContact):
     """Contact and friction, linear in a displacement of the coefficients; tractions along the surface (..., 2).
 
-    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None for the tractions
-    at the current positions.
+    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None: those at the
+    present positions.
     """
 
     step: SurfaceFriction
@@ -102,7 +102,7 @@ class SurfaceLinearContact(LinearContact):
         return PointTractions(normal, clipped(self.foreseen.trial, self._grip * normal))
 
     def begins(self, still: PointTractions) -> SurfaceStatus:
-        """Status to try first."""
+        """Status to try first: by the foreseen tractions, else (or with held limits) by those before the step."""
         return self.status(still if self.foreseen is None or self.held else self.foreseen)
 
     def status(self, at: PointTractions) -> SurfaceStatus:
@@ -114,7 +114,7 @@ class SurfaceLinearContact(LinearContact):
         return SurfaceStatus(touching, bearing, np.where(sliding[..., None], directions(at.trial), 0.0), turn)
 
     def under(self, status: PointStatus, at: PointTractions) -> PointTractions:
-        """Tractions of points under a fixed status."""
+        """Tractions ``at`` as they are with a fixed status: 0 without contact, limited for sliding points."""
         assert isinstance(status, SurfaceStatus)
         normal = np.where(status.touching, at.normal, 0.0)
         cap = self.points.cap if self.held else self._grip * normal
@@ -123,7 +123,7 @@ class SurfaceLinearContact(LinearContact):
         return PointTractions(normal, np.where(status.sticking[..., None], at.trial, slides))
 
     def force(self, tractions: PointTractions) -> Array:
-        """Gradient (size,) of tractions."""
+        """Gradient (size,) of the energy for given tractions."""
         slope = self.touch.slope
         load = tractions.normal[..., None] * upward(slope) + in_space(tractions.trial, slope)
         return self.solid.faces.push(self.step.contact.load_forces(load))
@@ -141,12 +141,12 @@ class SurfaceLinearContact(LinearContact):
         return both, None if follows is None else contact.form_blocks(follows)
 
     def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
-        """Work of tractions over the displacement from one pair of tractions to another."""
+        """Work of ``tractions`` over the displacement that changes the unlimited ones from ``begun`` to ``ended``."""
         across, along = self._travel(begun, ended)
         return float(np.vdot(tractions.normal, across) + np.vdot(tractions.trial, along))
 
     def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
-        """Work (n,), over the displacement between two tractions, of the limited tractions at shares (n,) of it."""
+        """Work (n,) over the displacement from ``begun`` to ``ended`` of the limited tractions at shares (n,) of it."""
         across, along = self._travel(begun, ended)
         change = begun.towards(ended, shares)
         normal = np.maximum(change.normal, 0.0)
@@ -155,21 +155,21 @@ class SurfaceLinearContact(LinearContact):
         return np.asarray(normal.reshape(n, -1) @ across.ravel() + trial.reshape(n, -1) @ along.ravel())
 
     def _travel(self, begun: PointTractions, ended: PointTractions) -> tuple[Array, Array]:
-        """Displacement between two tractions, times the areas of the points; normal and tangential."""
+        """Displacements, normal and tangential, between two tractions, times the areas of the points."""
         weight = self.step.contact.weight
         across = weight * (ended.normal - begun.normal) / self.step.contact.stiffness
         return across, weight[..., None] * (ended.trial - begun.trial) / self.step.stiffness
 
 
 class SurfaceFrictionSolver(FrictionSolver):
-    """Solver of the steps of a path under an object in space."""
+    """Solver of one step with friction for a wall with harmonics."""
 
     step: SurfaceFriction
     #: Tractions of the last linear model, or those predicted along the path; see `model`.
     foreseen: PointTractions | None = None
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:
-        """Direction as in `FrictionSolver`, from the foreseen tractions."""
+        """Newton step (size,) as in `FrictionSolver`, from the foreseen tractions."""
         # Without harmonics the steps are the solid's, and with them the last digits of its figures.
         if here.state.x.shape[1] == 2:
             return super().direction(here, kept)

@@ -36,7 +36,7 @@ _PAIRS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
 class LawFields(Protocol):
-    """Weighted energy of a law at deformation gradients (n, 3, 3), with derivatives."""
+    """Interface: weighted energy of a law at n deformation gradients F (n, 3, 3), and its derivatives."""
 
     @property
     def energy(self) -> float:
@@ -53,14 +53,14 @@ class LawFields(Protocol):
 
 
 class GradientLaw:
-    """A law as a function of deformation gradients."""
+    """A law as a function of deformation gradients, by the faster form if it needs only the first invariant."""
 
     def __init__(self, law: Hyperelastic) -> None:
         self._law = law
         self._first_only = _of_first_invariant(law)
 
     def at(self, gradient: Array, cofactor: Array, volume: Array, weight: Array) -> LawFields:
-        """Energy at gradients (n, 3, 3) with their cofactors and determinants (n,), all positive, and weights (n,)."""
+        """Energy at gradients (n, 3, 3), with cofactors (n, 3, 3), positive determinants (n,) and weights (n,)."""
         if not self._first_only:
             return PrincipalFields(self._law, gradient, weight)
         flat = gradient.reshape(-1, 9)
@@ -100,7 +100,7 @@ class FirstInvariantFields:
 
 
 def _by_cofactor() -> Array:
-    """Derivative of the cofactors by F as a linear map of F, (9, 81)."""
+    """Matrix (9, 81) that maps F, row by row, to the derivative of its cofactors by F."""
     out = np.zeros((3, 3, 3, 3, 3, 3))
     turns = [(i, (i + 1) % 3, (i + 2) % 3) for i in range(3)]
     for i, k, m in turns:
@@ -118,7 +118,7 @@ class _OtherInvariantError(Exception):
 
 
 class _FirstInvariant(Strain):
-    """Strains that provide only the first invariant."""
+    """Strains that raise `_OtherInvariantError` if a law asks for more than the first invariant."""
 
     @property
     def second(self) -> Jet:
@@ -138,7 +138,7 @@ def _of_first_invariant(law: Hyperelastic) -> bool:
 
 
 class PrincipalFields:
-    """A law of any kind, by the principal stretches and axes of the gradients."""
+    """Weighted energy of a law of any kind, by the principal stretches and axes of the gradients."""
 
     def __init__(self, law: Hyperelastic, gradient: Array, weight: Array) -> None:
         self._left, stretch, self._right = np.linalg.svd(gradient)
@@ -173,7 +173,7 @@ class PrincipalFields:
 
 
 def _add_stretches(form: Array, s: Array, jet: Array, pressure: Array) -> None:
-    """Write the second derivatives by the principal stretches into ``form``."""
+    """Write the second derivatives by the principal stretches s (3, n) into ``form`` (n, 3, 3, 3, 3), in place."""
     both = jet[BY_J] + 4.0 * s[0] * s[1] * jet[BY_AA] + 2.0 * (s[0] ** 2 + s[1] ** 2) * jet[BY_AJ]
     both += s[0] * s[1] * jet[BY_JJ]
     second = {(2, 2): jet[BY_HH], (0, 1): both + pressure * s[2]}
@@ -189,7 +189,7 @@ _FIELDS = 3
 
 
 class NodePairOperator(FieldOperator):
-    """A `FieldOperator` of groups of three components whose stiffness is stored by pairs of nodes a <= b of a block.
+    """A `FieldOperator` of groups of three components that stores a stiffness by pairs of nodes a <= b of a block.
 
     The coefficients of a node are ordered by component: all radial, all axial, all circumferential.
     """
@@ -216,7 +216,7 @@ class NodePairOperator(FieldOperator):
         self._picked = place[self.first][:, :, None] * (nodes.shape[1] * width) + place[self.second][:, None, :]
 
     def entries(self, dofs: Index) -> BlockEntries:
-        """Rows and columns of the entries of `stiffness` for unknowns (n_mesh_nodes, columns)."""
+        """Rows and columns in the matrix of the entries of `stiffness`; ``dofs`` (n_mesh_nodes, columns): unknowns."""
         table = dofs[self._nodes][:, :, self.order]
         shape = (*self._picked.shape[:1], self.order.size, self.order.size)
         row = np.broadcast_to(table[:, self.first, :, None], (len(table), *shape))
@@ -232,8 +232,8 @@ class NodePairOperator(FieldOperator):
         return np.asarray(flat.take(self._picked.reshape(self.first.size, -1), axis=1))
 
     def stiffness(self, by_fields: Array) -> Array:
-        """Second derivative by the coefficients of pairs of nodes, (n_blocks, n_pairs, columns columns), from the
-        second derivative by the fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
+        """Second derivative (n_blocks, n_pairs, columns**2) by the coefficients of pairs of nodes, from that by the
+        fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
         blocks, points, angles = by_fields.shape[:3]
         n, width = len(self._groups), self.columns
         form = by_fields.reshape(blocks, points, angles, n, _FIELDS, n, _FIELDS)
@@ -250,7 +250,7 @@ class NodePairOperator(FieldOperator):
 
 
 def _columns(harmonics: Harmonics) -> list[Index]:
-    """Columns of the coefficients of each component."""
+    """Columns of the coefficients of each component: radial, axial, circumferential."""
     later = 3 * np.arange(1, harmonics.waves + 1) - 1
     parts: list[Index] = [np.empty(0, np.intp)] * _FIELDS
     parts[RADIAL], parts[AXIAL] = np.append(0, later), np.append(1, later + 1)
@@ -267,8 +267,8 @@ def _separate(rows: Array, parts: list[Index]) -> bool:
 
 
 def _waves(left: Array, right: Array, parts: list[tuple[slice, slice]]) -> list[Array]:
-    """Products of two rows of coefficients at the angles, (n_angles fields 3, columns of the part times all columns),
-    for each part of the left row."""
+    """Products of the factors of two groups at the angles, (n_angles * fields * 3, columns of a part * all columns),
+    for each part (fields, columns) of the left group."""
     out = []
     for fields, columns in parts:
         product = np.einsum("afc,agd->afgcd", left[:, fields, columns], right)
@@ -308,7 +308,7 @@ class HarmonicCavity(Cavity):
         return self._volume(self._operator.fields(nodes))
 
     def gradient(self, nodes: Array) -> tuple[float, Array]:
-        """Volume and its derivative by edge coefficients, (n_edges, n columns)."""
+        """Volume and its derivative by edge coefficients, (n_edges, n * columns) for n nodes of an edge."""
         fields = self._operator.fields(nodes)
         by_field = np.zeros_like(fields)
         for factor, *three in _PRODUCTS:
@@ -317,7 +317,7 @@ class HarmonicCavity(Cavity):
         return self._volume(fields), self._operator.forces(by_field)
 
     def hessian(self, nodes: Array) -> Array:
-        """Second derivative by edge coefficients, (n_edges, n columns, n columns)."""
+        """Second derivative by edge coefficients, (n_edges, n * columns, n * columns)."""
         fields = self._operator.fields(nodes)
         by_fields = np.zeros((*fields.shape, fields.shape[3]))
         for factor, *three in _PRODUCTS:

@@ -1,4 +1,4 @@
-"""The discrete body with harmonics, without rotational symmetry, and its Newton steps under an object.
+"""The finite elements of a wall with harmonics, without rotational symmetry, and its Newton steps under an object.
 
 The set of touching points is carried from step to step, and tractions are unknowns of their own, as in primal-dual
 methods (Hintermüller, Ito and Kunisch 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558). The curvature of the
@@ -29,8 +29,8 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 
 class HarmonicFace(BaseFace):
-    """One face of the wall at the angles; arrays of points are (n_edges, n_points, n_angles), slopes of the base have
-    one more axis and curvatures two more, by x and y."""
+    """One face of the wall at the contact angles; arrays of points are (n_edges, n_points, n_angles), slopes of the
+    base have one more axis and second derivatives two more, by x and y."""
 
     def __init__(self, face: BaseFace, harmonics: Harmonics, signs: Array) -> None:
         self._face, self.high, self.stiffness = face, face.high, face.stiffness
@@ -39,7 +39,7 @@ class HarmonicFace(BaseFace):
         self.weight = np.repeat(face.weight[..., None], angles, axis=2) / angles
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
-        """Contact of points below the surface of the base for coefficients (n_nodes, columns); None without any."""
+        """Contact for coefficients (n_nodes, columns); None if no point is below the surface of the base."""
         place = self._operator.fields(nodes)
         if place[..., Z].min() >= self.high:
             return None
@@ -49,11 +49,11 @@ class HarmonicFace(BaseFace):
         return BaseMeeting(radius, traction, under.slope, under.curve) if traction.any() else None
 
     def force(self, meeting: BaseMeeting) -> Array:
-        """Derivative of the energy by edge coefficients, (n_edges, n columns)."""
+        """Derivative of the energy by edge coefficients, (n_edges, n * columns) for n nodes of an edge."""
         return self._operator.forces(-(self.weight * meeting.traction)[..., None] * upward(meeting.slope))
 
     def hessian(self, meeting: BaseMeeting) -> Array:
-        """Second derivative by edge coefficients, (n_edges, n columns, n columns)."""
+        """Second derivative of the energy by edge coefficients, (n_edges, n * columns, n * columns)."""
         normal = upward(meeting.slope)
         stiff = np.where(meeting.traction > 0.0, self.stiffness, 0.0) * self.weight
         form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
@@ -63,10 +63,10 @@ class HarmonicFace(BaseFace):
 
 @dataclass(frozen=True)
 class HarmonicFields(PointFields):
-    """Fields at the integration points and angles: ``strains`` (n_points n_angles, 9) are the transposed deformation
-    gradient by R, by Z and around the axis; ``jets`` its determinant, ``basis`` its cofactors.
+    """Fields at the integration points and angles, n in all: ``strains`` (n, 3, 3) are the transposed deformation
+    gradients F, by R, by Z and around the axis; ``jets`` (n,) their determinants, ``basis`` (n, 3, 3) their cofactors.
 
-    pressure: derivative of the averaged volume's energy by det F, (n_points n_angles,), weighted.
+    pressure: derivative of the averaged volume's energy by det F, (n,), weighted.
     """
 
     law: LawFields
@@ -76,7 +76,7 @@ class HarmonicFields(PointFields):
 class HarmonicModel(SolidModel):
     """A solid whose nodes have harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
     units of the solid's ``length``, see `fields.Harmonics`; with order 0 positions and results equal the solid's.
-    ``stride`` 2 is for scenes that are symmetric about two planes.
+    ``stride`` 2 is for scenes that are symmetric about two planes. Raises ValueError if the wall can meet its flange.
 
     The volume is averaged in the meridian as in the solid, and around the axis over the harmonics to the same order.
     """
@@ -88,7 +88,7 @@ class HarmonicModel(SolidModel):
         super().__init__(solid.mesh, solid.material, solid.scheme, solid.grade)
 
     def _assemble(self, base: RigidBase | None) -> None:
-        """Number the unknowns and build contact, cavity and base at the angles; the base is that of the solid."""
+        """Number the unknowns and build contact, cavity and base at the angles; ``base`` is ignored for the solid's."""
         solid, harmonics = self._solid, self.harmonics
         self.rest, self.meeting = harmonics.lifted(solid.rest), solid.meeting
         self.dofs, signs = _number(solid, harmonics)
@@ -105,14 +105,14 @@ class HarmonicModel(SolidModel):
         self.supports = () if self.base is None else (self.base,)
 
     def lowest(self, x: Array, edges: Index, above: float = -np.inf) -> float:
-        """Least height in R0, over the angles, of the nodes of a face that lie above ``above`` at rest."""
+        """Least height (R0), over the angles, of those nodes of ``edges`` that are higher than ``above`` at rest."""
         nodes = np.unique(edges)
         nodes = nodes[self.rest[nodes, 1] > above]
         heights = self.harmonics.values(self.harmonics.angles)[:, AXIAL] @ x[nodes].T
         return float(heights.min())
 
     def _operators(self, signs: Array) -> None:
-        """Constant operators: deformation gradients, weights and the tested modes of the averaged volume."""
+        """Constant operators: deformation gradients, weights and weighted modes of the averaged volume."""
         points, _ = gauss_square(self.scheme.gauss)
         b, _, _ = strain_operator(self.mesh.nodes / self.length, self.mesh.cells, points)
         by_r, by_z, over = (b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
@@ -133,11 +133,11 @@ class HarmonicModel(SolidModel):
         self._waves = [np.ascontiguousarray(w.transpose(1, 2, 0, 3).reshape(3 * angles.size, -1)) for w in waves]
 
     def expand(self, step: Array) -> Array:
-        """Displacement of the coefficients (n_nodes, columns) from a vector of free unknowns (size,)."""
+        """Displacement of the coefficients (n_nodes, columns) from the free unknowns (size,); 0 where fixed."""
         return np.asarray(np.where(self.dofs >= 0, step[self.dofs], 0.0) * self._sign)
 
     def local(self, x: Array) -> PointFields:
-        """Deformation gradients, energy and its derivatives at the integration points for coefficients x."""
+        """Deformation gradients, energy, derivatives at the integration points; energy inf if a point is inverted."""
         f = self._field.fields(x)
         gradient = f.reshape(-1, 3, 3)
         cofactor = _cofactors(gradient)
@@ -154,7 +154,7 @@ class HarmonicModel(SolidModel):
         return HarmonicFields(law.energy + stored, gradient, volume, cofactor, law, pressure)
 
     def forces(self, local: PointFields) -> Array:
-        """Derivative of the stored energy by the coefficients of the cells, (n_cells, n)."""
+        """Derivative of the stored energy by the coefficients of the cells, (n_cells, n_coefficients)."""
         assert isinstance(local, HarmonicFields)
         by_gradient = local.law.stress() + local.pressure[:, None, None] * local.basis
         return self._field.forces(by_gradient.reshape(*self._weight.shape, -1, 9))
@@ -169,7 +169,7 @@ class HarmonicModel(SolidModel):
         return blocks
 
     def _swelling(self, local: PointFields) -> Array:
-        """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes (waves + 1), n)."""
+        """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes * (waves + 1), n_coefficients)."""
         n_cells, n_points = self._weight.shape
         cofactor = local.basis.reshape(n_cells * n_points, -1, 3, 3)
         along = [cofactor[:, :, k].reshape(n_cells * n_points, -1) @ waves for k, waves in enumerate(self._waves)]
@@ -187,8 +187,8 @@ def _cofactors(f: Array) -> Array:
 
 
 def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
-    """Number of the unknown of each node and coefficient (n_nodes, columns), -1 if fixed, node by node in the solid's
-    order; and its sign.
+    """Numbers of the unknowns by node and coefficient (n_nodes, columns), -1 if fixed, node by node in the solid's
+    order; and the sign of each coefficient.
 
     On the axis only z_0 is free, and as one unknown the motion across the axis, r_1 = -s_1, which is zero with two
     planes of symmetry.
@@ -214,13 +214,13 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
 
 
 _MOST = 24
-"""Most points by which a set may differ from the factored set: solving for them costs two factorisations."""
+"""Most points in which a set may differ from the factored set: solving for as many costs two factorisations."""
 
 
 class PointSets:
-    """Newton steps at one state for different sets of touching points, given as masks.
+    """Newton steps at one state for different sets of touching points, given as masks of the contact's points.
 
-    ``held`` has the tractions that act on the curvature of the object, ``start`` the unclipped tractions of the state.
+    ``held`` has the tractions that act on the curvature of the object, ``start`` the state's, negative for open gaps.
     """
 
     def __init__(self, scene: SolidScene, state: SolverState, held: ContactEvaluation, start: Array, band: Array):
@@ -230,11 +230,11 @@ class PointSets:
         self._factor: Array | None = None
 
     def load(self, active: Flags) -> Array:
-        """Gradient (size,) of the energy with only the tractions of a set."""
+        """Gradient (size,) of the energy with the tractions of a set of points only."""
         return self._state.inner + self._force(np.where(active, self._start, 0.0))
 
     def at(self, active: Flags) -> NewtonDirection:
-        """Newton step to the minimum of the model for a set of touching points."""
+        """Newton step to the minimum of the quadratic model for a set of touching points."""
         changed = None if self._factor is None else np.flatnonzero(active != self._base)
         if changed is None or changed.size > _MOST:
             changed = self._factored(active)
@@ -250,7 +250,7 @@ class PointSets:
         return newton
 
     def _factored(self, active: Flags) -> Index | None:
-        """Factor the tangent for a set; an empty array of changed points, or None if not positive definite."""
+        """Factor the tangent for a set; returns an empty array of changed points, None if not positive definite."""
         factor, info = lapack.dpbtrf(with_contact(self._scene, self._band, self._held, active), lower=1)
         self._factor = None
         if info:
@@ -263,7 +263,7 @@ class PointSets:
         return np.empty(0, np.intp)
 
     def _changed(self, active: Flags, changed: Index) -> NewtonDirection | None:
-        """Newton step with ``changed`` points of the factored set; None if the tangent is not positive definite."""
+        """Newton step for a set that differs in points ``changed`` from the factored one; None if not definite."""
         solution = self._solution
         if changed.size:
             columns = self._known(changed)
@@ -283,7 +283,7 @@ class PointSets:
         return NewtonDirection(step, soft, denominator, True, True) if denominator > 0.0 else None
 
     def _known(self, points: Index) -> list[int]:
-        """Columns of points among the unit loads and their solutions, computed at first use."""
+        """Columns, for points (flat indices), of their unit loads and solutions, which are computed at first use."""
         new = [int(p) for p in points if int(p) not in self._number]
         if new:
             loads = np.stack([self._unit(p) for p in new], axis=1)
@@ -311,8 +311,8 @@ _ROUNDS = 12
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Points that are expected to touch, and the tractions that act on the curvature of the object there; of the shape
-    of the points of contact."""
+    """Masks of the points that are expected to touch, and tractions that act on the curvature of the object there, both
+    of the shape of the contact's points."""
 
     touching: Flags
     traction: Array
@@ -325,7 +325,7 @@ class ContactNewton:
         self._foreseen = foreseen
 
     def __call__(self, scene: SolidScene, state: SolverState) -> NewtonDirection:
-        """The step at a state."""
+        """The Newton step at a state; its tractions are the guess for the next one."""
         assert state.touch is not None
         newton, traction = _ContactModel(scene, state, state.touch, self._foreseen).least()
         self._foreseen = Foreseen(traction > 0.0, np.maximum(traction, 0.0))
@@ -334,7 +334,7 @@ class ContactNewton:
 
 class _ContactModel:
     """Model of wall, filling and contact at a state: convex, piecewise quadratic, with a kink in the gradient where a
-    point comes or goes. Tractions are not clipped."""
+    point comes or goes. Tractions are negative for open gaps."""
 
     def __init__(self, scene: SolidScene, state: SolverState, touch: ContactEvaluation, foreseen: Foreseen | None):
         self._scene, self._state, self._touch = scene, state, touch
@@ -377,7 +377,7 @@ class _ContactModel:
         return replace(newton, step=step), here
 
     def _pull(self, active: Flags, traction: Array) -> Array:
-        """Gradient (size,) of wall and filling that the tractions of a set of points balance."""
+        """Gradient (size,) of wall and filling that balances the tractions of a set of points."""
         return np.asarray(-self._push(self._contact.force(np.where(active, traction, 0.0), self._touch.slope)))
 
     def _lower(self, step: Array, ahead: Array, pull: Array) -> bool:

@@ -1,4 +1,4 @@
-"""Contact of the outer wall with a rigid surface at equally spaced angles, and the resulting pressed wall.
+"""Contact of the outer wall with a rigid surface at equally spaced angles, and records of pressed walls for drawing.
 
 Contact is the solid's penalty at points in space; a pressed wall has positions, contact forces and pressures at nodes.
 """
@@ -49,15 +49,15 @@ class PressedFace:
 
     @property
     def edges(self) -> int:
-        """Number of edges."""
+        """Number of edges of the wall's outer face."""
         return len(self.areas) - 1
 
     def scaled(self, force: float) -> PressedFace:
-        """The face with all forces times a factor."""
+        """The face with all forces multiplied by ``force``."""
         return self if force == 1.0 else replace(self, forces=force * self.forces)
 
     def rows(self) -> Array:
-        """Positions along the wall at which it is drawn, in edges from the base: closer at the edge of contact."""
+        """Places (n_rows,) along the wall to draw it at, in edges from the base; closer at the edge of contact."""
         share = self.touching / self.areas
         low, high = np.minimum(share[:-1], share[1:]), np.maximum(share[:-1], share[1:])
         partly = ((high > 0.0) & (low < 1.0)).any(axis=1) | (np.ptp(share, axis=1)[1:] > 0.0)
@@ -67,7 +67,7 @@ class PressedFace:
         return np.asarray(every[::-stride][::-1])
 
     def positions(self, rows: Array, angles: Array) -> Array:
-        """Positions (x, y, z) for rows along the wall and angles, (n_rows, n_angles, 3), mm."""
+        """Positions (x, y, z), (n_rows, n_angles, 3), mm, at places along the wall as of `rows` and at angles (rad)."""
         step = (len(self.coefficients) - 1) // self.edges
         edge = np.minimum(rows.astype(np.intp), self.edges - 1)
         nodes = step * edge[:, None] + [0, step, 1][: step + 1]
@@ -124,14 +124,14 @@ X, Y, Z = range(3)
 
 
 def face_operator(edges: Index, points: int, harmonics: Harmonics, signs: Array) -> FieldOperator:
-    """Operator for the positions (x, y, z) at the Gauss points of edges and at the angles."""
+    """Operator for positions (x, y, z) at ``points`` Gauss points of each edge and at the contact angles."""
     shape, _ = line_shapes(np.polynomial.legendre.leggauss(points)[0], edges.shape[1])
     return FieldOperator([FieldGroup(shape, harmonics.cartesian(harmonics.contact_angles))], edges, signs)
 
 
 class HarmonicContact(Contact):
     """The solid's contact with every quadrature point of the outer wall evaluated at each angle: arrays of points are
-    (n_edges, n_points, n_angles), slopes have one more axis and curvatures two more, by x and y."""
+    (n_edges, n_points, n_angles), slopes have one more axis and curvatures two, by x and y; n nodes an edge."""
 
     def __init__(self, solid: SolidModel, harmonics: Harmonics, signs: Array) -> None:
         super().__init__(solid.mesh, solid.mesh.nodes / solid.length, solid.contact.stiffness)
@@ -141,11 +141,11 @@ class HarmonicContact(Contact):
         self.noise = float(np.finfo(np.float64).eps * self.stiffness * np.linalg.norm(self.weight))
 
     def points(self, nodes: Array) -> Array:
-        """Positions (x, y, z) of the points, (n_edges, n_points, n_angles, 3)."""
+        """Positions (x, y, z) of the points for coefficients, (n_edges, n_points, n_angles, 3)."""
         return self._operator.fields(nodes)
 
     def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
-        """Contact energy and tractions under a surface, for coefficients (n_nodes, columns)."""
+        """Contact with a surface for coefficients (n_nodes, columns)."""
         place = self.points(nodes)
         assert isinstance(plate, Surface)
         under = plate.over(place[..., X], place[..., Y])
@@ -161,11 +161,11 @@ class HarmonicContact(Contact):
         return np.asarray(lift + along - place[..., Z])
 
     def force(self, traction: Array, slope: Array) -> Array:
-        """Derivative of the energy by edge coefficients under given tractions, (n_edges, n columns)."""
+        """Derivative of the energy by edge coefficients for given tractions and slopes, (n_edges, n * columns)."""
         return self.load_forces(traction[..., None] * upward(slope))
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
-        """Second derivative of the energy with the `active` points in contact, (n_edges, n columns, n columns)."""
+        """Second derivative of the energy, (n_edges, n * columns, n * columns), if the `active` points touch."""
         return self.form_blocks(self.form(touch, active))
 
     def form(self, touch: ContactEvaluation, active: Flags) -> Array:
@@ -176,17 +176,17 @@ class HarmonicContact(Contact):
         return form
 
     def form_blocks(self, form: Array) -> Array:
-        """Derivative by the coefficients of the edges, (n_edges, n columns, n columns), from ``form`` by positions."""
+        """Derivative by the edges' coefficients, (n_edges, n * columns, n * columns), from ``form`` by positions."""
         return self._operator.stiffness(self.weight[..., None, None] * form)
 
     def load_forces(self, load: Array) -> Array:
-        """Derivative of the energy by edge coefficients (n_edges, n columns) of tractions in space, (..., 3)."""
+        """Derivative of the energy by edge coefficients (n_edges, n * columns), from tractions (x, y, z), (..., 3)."""
         return self._operator.forces(self.weight[..., None] * load)
 
     def resultant(self, nodes: Array, touch: ContactEvaluation, held: Array | float = 0.0) -> Array:
         """Force (x, y, z) on the object and its moment (x, y, z) about the origin; nondimensional, (2, 3).
 
-        held: friction tractions in space, (n_edges, n_points, n_angles, 3).
+        held: friction tractions (x, y, z), (n_edges, n_points, n_angles, 3), 0 without friction.
 
         Each angle also stands for its mirror images, so the force in y and the moments about x and z are zero; with two
         planes of symmetry the force is vertical and has no moment.
@@ -198,7 +198,7 @@ class HarmonicContact(Contact):
         return np.asarray(out * [[along, 0.0, 1.0], [0.0, along, 0.0]])
 
     def middle(self, nodes: Array, touch: ContactEvaluation) -> float:
-        """Centre of the normal tractions in x; 0 without contact or with two planes of symmetry."""
+        """Coordinate x (R0) of the centre of the normal tractions; 0 without contact or with two symmetry planes."""
         load = self.weight * touch.traction
         if self._symmetric or not load.any():
             return 0.0
@@ -206,7 +206,7 @@ class HarmonicContact(Contact):
 
 
 def upward(slope: Array) -> Array:
-    """Upward normal of a surface with given slopes, with vertical component 1: (-d/dx, -d/dy, 1)."""
+    """Upward normals (..., 3) of a surface with slopes (..., 2) by x and y, with vertical component 1."""
     return np.concatenate([-slope, np.ones((*slope.shape[:-1], 1))], axis=-1)
 
 
@@ -247,8 +247,8 @@ def pressed_face(
 
 
 def face_areas(solid: SolidModel, x: Array, harmonics: Harmonics) -> Array:
-    """Areas of the deformed outer wall at the points of contact (n_edges, n_points, n_angles) in R0 squared: the
-    product of the tangents along the meridian and around the axis, of coefficients x (n_nodes, columns)."""
+    """Areas (R0^2) of the deformed outer wall at the points of contact, (n_edges, n_points, n_angles), for coefficients
+    x (n_nodes, columns): products of the tangents along the meridian and around the axis."""
     edges, angles = solid.mesh.outer, harmonics.contact_angles
     place, weight = np.polynomial.legendre.leggauss(solid.contact.shape.shape[0])
     value, slope = line_shapes(place, edges.shape[1])
@@ -259,8 +259,8 @@ def face_areas(solid: SolidModel, x: Array, harmonics: Harmonics) -> Array:
 
 
 def _gathered(solid: SolidModel, load: Array) -> Array:
-    """Loads at the contact points (n_edges, n_points, n_angles, k) distributed to the ends of their edges linearly by
-    distance, (n_mesh_nodes, n_angles, k). All shares are non-negative, so no node is pulled."""
+    """Loads (n_mesh_nodes, n_angles, k) at the ends of edges from those at contact points (n_edges, n_points, n_angles,
+    k), distributed linearly by distance. All shares are non-negative, so no node is pulled."""
     ends = solid.mesh.outer[:, [START, END]]
     place, _ = np.polynomial.legendre.leggauss(solid.contact.shape.shape[0])
     shares = 0.5 + 0.5 * place[:, None] * np.array([-1.0, 1.0])

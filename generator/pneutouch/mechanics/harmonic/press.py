@@ -1,4 +1,4 @@
-"""Press by an object that comes straight down on an inflated dome, off its axis or leaning.
+"""Press by an object that comes straight down on an inflated dome, off its axis or leaning, and can then move sideways.
 
 Also the greatest stretch on the faces of a wall without rotational symmetry.
 """
@@ -54,7 +54,7 @@ class HarmonicProbe:
 
 
 _ALONG = 33
-"""Points of every edge of the outer wall at which an object may touch first."""
+"""Number of points of every edge of the outer wall at which an object may touch first."""
 
 
 _UPPER = 0.5
@@ -63,14 +63,13 @@ _UPPER = 0.5
 
 @dataclass(frozen=True)
 class OffAxisState:
-    """One equilibrium; mm, N, MPa.
+    """One equilibrium; mm, N, MPa. Fields that are not listed are as in `indent.PressState`.
 
-    force: of the wall on the object, upwards.  sideways: of the wall on the object along x, the direction of angle 0.
-    moment: of the wall on the object about the y axis through the centre of the base plane, N mm: the sum of z times
-    the force along x minus x times the force upwards.
-    contact_radius: greatest horizontal distance of a touching point from the centre of the contact forces. stiffness,
-    slope: see `indent.PressState`.  positions: coefficients, see `fields.Harmonics`.
-    """
+    force, sideways: of the wall on the object, upwards and along x, the direction of angle 0. moment: of the wall on
+    the object about the y axis through the centre of the base plane, N mm: the sum of z times the force along x minus x
+    times the force upwards. contact_radius, object_distance: greatest horizontal distance of a touching point from the
+    centre of the contact forces, and from the object's axis. inner_height: least height of the upper inner wall.
+    positions: coefficients, see `fields.Harmonics`."""
 
     indentation: float
     force: float
@@ -95,7 +94,7 @@ class OffAxisState:
 @dataclass(frozen=True)
 class OffAxisPath:
     """States at the steps of the protocol, all solved states and events, as in `indent.IndentationPath`, with harmonics
-    to ``order``; ``shear``: path of an object that moves sideways after the press."""
+    to ``order``; ``shear``: path of the object's sideways motion after the press, None without it."""
 
     order: int
     states: list[OffAxisState]
@@ -105,7 +104,7 @@ class OffAxisPath:
     shear: ShearPath | None = None
 
     def column(self, name: str) -> Array:
-        """One field of every state, (n_states,)."""
+        """The field ``name`` of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
 
 
@@ -119,7 +118,7 @@ class OffAxisFollower(PathFollower):
         return minimise(scene, x, find=ContactNewton(self._foreseen(scene)))
 
     def _foreseen(self, scene: SolidScene) -> Foreseen | None:
-        """Points that will touch, and their tractions, predicted with the rates of the last state."""
+        """Points that will touch and their tractions, predicted with the last state's rates; None without contact."""
         here, contact = self.here, scene.solid.contact
         touch = here.state.touch
         assert touch is not None and scene.plate is not None
@@ -134,10 +133,10 @@ class OffAxisFollower(PathFollower):
 class OffAxisPress:
     """Presses of one dome from one free state by one object, with any number of harmonics.
 
-    ``surface`` is the object in R0 at any height; ``press`` is as for the axisymmetric solid, apart from its object.
-    ``travel``: sideways displacement of the object after the press, mm; only with friction. ``symmetric``: True if the
-    scene is also symmetric about the plane across that of the offset, so that harmonics of even order suffice.
-    """
+    ``surface`` is the object in R0 at any height; ``press`` is as for the axisymmetric solid, its object is not used.
+    ``travel``: sideways displacement of the object after the press, mm; without friction it must be 0 (ValueError).
+    ``symmetric``: True if the scene is also symmetric about the plane across that of the offset, so that harmonics of
+    even order suffice."""
 
     def __init__(
         self,
@@ -158,7 +157,7 @@ class OffAxisPress:
         self.surface = surface.at(first_height(surface, outline))
 
     def run(self, order: int) -> OffAxisPath:
-        """Press with harmonics to an order.
+        """Press with harmonics to ``order``, and move the object sideways after that if ``travel`` is not 0.
 
         Raises NoConvergenceError if there is no equilibrium at first contact.
         """
@@ -180,14 +179,13 @@ class OffAxisPress:
         return replace(pressed, shear=self._shear(follower, pressed)) if self._travel else pressed
 
     def _shear(self, follower: PathFollower, pressed: OffAxisPath) -> ShearPath:
-        """Path of the object moving sideways after a complete press, else an empty one."""
+        """Path of the object's sideways motion after a complete press; without states after an incomplete one."""
         assert isinstance(follower, SurfaceFrictionFollower)
         return shear(follower, self._travel, self._free.pressure) if pressed.complete else not_sheared()
 
     def coarser(self, order: int, states: list[OffAxisState]) -> list[tuple[float, float]] | None:
-        """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None if one has no equilibrium.
-
-        Only valid without friction: with friction a state depends on those before it.
+        """Force (N) and pressure rise (MPa) at ``states``, solved again from them with the fewer harmonics of
+        ``order``; None if one has no equilibrium. Only without friction: with it, a state depends on those before it.
         """
         model, out = self._model(order), []
         for state in states:
@@ -206,7 +204,7 @@ class OffAxisPress:
         return HarmonicModel(self._solid, order, self._stride)
 
     def face(self, pressed: OffAxisPath, end: float) -> PressedFace:
-        """The outer wall at the end of a shear, or else at the last solved state up to an indentation (mm)."""
+        """The outer wall at the end of the sideways motion, without one at the last state up to indentation ``end``."""
         solid, length, sums = self._solid, self._solid.length, Harmonics(pressed.order, self._stride)
         last = max((s for s in pressed.path if s.indentation <= end * (1.0 + 1e-9)), key=lambda s: s.indentation)
         placed = self.surface.at(self.surface.height - last.indentation / length)
@@ -272,7 +270,7 @@ class OffAxisPress:
         )
 
     def _events(self, a: OffAxisState, b: OffAxisState) -> list[SolidEvent]:
-        """Events whose levels are crossed between two consecutive states."""
+        """Events whose levels are crossed between the consecutive states a and b."""
         press, wall = self._press, self._solid.mesh.wall
         levels = {
             "gauge_range": press.gauge_range,
@@ -288,7 +286,7 @@ class OffAxisPress:
 
 
 def _watched(s: OffAxisState) -> dict[str, PathPoint]:
-    """Quantities of one state whose levels define events."""
+    """Quantities of one state whose levels define events, by kind of event."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
         "gauge_range": PathPoint(s.indentation, s.pressure, rate),

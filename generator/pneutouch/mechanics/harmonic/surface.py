@@ -19,7 +19,7 @@ from pneutouch.mechanics.solid.object_contact import Indenter, Plate
 
 
 class SurfaceHeight(NamedTuple):
-    """Height of a surface at points, its gradient (..., 2) and second derivatives (..., 2, 2) by x and y."""
+    """Height (...) of a surface at points, its gradient (..., 2) and second derivatives (..., 2, 2) by x and y."""
 
     height: Array
     slope: Array
@@ -33,7 +33,7 @@ class Surface(ABC):
     @property
     @abstractmethod
     def height(self) -> float:
-        """Height of the object's reference point."""
+        """Height of the object's lowest point, or of another point that moves with it."""
 
     @property
     @abstractmethod
@@ -42,7 +42,7 @@ class Surface(ABC):
 
     @abstractmethod
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Underside of the object at points of any shape."""
+        """Underside of the object at points x, y, arrays of one shape."""
 
     @abstractmethod
     def distance(self, x: Array, y: Array) -> Array:
@@ -50,16 +50,16 @@ class Surface(ABC):
 
     @abstractmethod
     def at(self, height: float) -> Surface:
-        """This body at another height."""
+        """The body at another height."""
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the section in the plane of symmetry at x = r, with its first two derivatives."""
+        """Height of the section in the plane of symmetry at x = r, and its first two derivatives, arrays like r."""
         under = self.over(r, np.zeros_like(r))
         return under.height, under.slope[..., 0], under.curve[..., 0, 0]
 
 
 def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y: Array) -> SurfaceHeight:
-    """Surface of revolution about the axis x = y = 0 from its height over the radius and two derivatives."""
+    """Surface of revolution about x = y = 0 at points; ``profile`` gives height and two derivatives at radii."""
     radius = np.hypot(x, y)
     height, slope, curve = profile(radius)
     safe = np.maximum(radius, 1.0e-300)
@@ -74,7 +74,7 @@ def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y
 
 @dataclass(frozen=True)
 class ProfiledObject(Surface):
-    """An object with the section of ``body``, centred at x = ``offset``."""
+    """An object with the section of ``body`` in the plane of symmetry, centred at x = ``offset`` (R0)."""
 
     body: Indenter
     offset: float = 0.0
@@ -90,7 +90,7 @@ class ProfiledObject(Surface):
         return self.body.span
 
     def at(self, height: float) -> Self:
-        """This object at another height."""
+        """The object at another height."""
         return replace(self, body=self.body.at(height))
 
 
@@ -100,11 +100,11 @@ class LyingObject(ProfiledObject):
     the distance from its middle at x = ``offset``."""
 
     def distance(self, x: Array, y: Array) -> Array:
-        """Distance of points from the body's plane of symmetry."""
+        """Distance of points from the body's middle plane x = ``offset``."""
         return np.asarray(np.abs(x - self.offset) + 0.0 * y)
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Underside of the body at points of any shape."""
+        """Underside of the body at points x, y, arrays of one shape."""
         along = x - self.offset + 0.0 * y
         height, slope, curve = self.body.underside(np.abs(along))
         by_xy, bend = np.zeros((*along.shape, 2)), np.zeros((*along.shape, 2, 2))
@@ -125,7 +125,7 @@ class PlacedObject(ProfiledObject):
         return np.asarray(np.hypot((x - self.offset) / np.cos(self.tilt), y))
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Underside of the body at points of any shape."""
+        """Underside of the body at points x, y, arrays of one shape."""
         along = x - self.offset
         if not self.tilt:
             return revolved(self.body.underside, along, y)
@@ -171,7 +171,7 @@ def object_lines(body: ProfiledObject, reach: float) -> tuple[Array, ...]:
 
 
 def _placed(body: PlacedObject, radius: float | Array, angle: float | Array, height: float | Array) -> Array:
-    """Points (k, 3), in space, of a body of revolution, from coordinates about its own axis."""
+    """Points (x, y, z), (k, 3), of a body of revolution, from radius, angle and height about its own axis."""
     cos, sin = np.cos(body.tilt), np.sin(body.tilt)
     x, y, z = np.broadcast_arrays(radius * np.cos(angle), radius * np.sin(angle), height - body.height)
     return np.stack([body.offset + cos * x - sin * z, y, body.height + sin * x + cos * z], axis=1)
@@ -213,7 +213,7 @@ _ANGLES = 181
 
 
 def first_height(surface: Surface, outline: tuple[Array, Array]) -> float:
-    """Height of a surface at first contact with the outer wall of an inflated dome, given as points (r, z)."""
+    """Height of a surface at first contact from above with the points r, z (n,) of a dome's outer wall."""
     r, z = outline
     angle = np.linspace(0.0, np.pi, _ANGLES)[:, None]
     under = surface.at(0.0).over(r * np.cos(angle), r * np.sin(angle)).height

@@ -1,8 +1,8 @@
 """A sensor's reading over frequency: wall, gas in the cavity and line, for small changes about a state.
 
 A change v of the cavity volume and a force (or a travel) x give the pressure p = k (v/C) + b x at the wall; C is the
-wall's volume compliance at constant x, k(s) its modulus over the relaxed modulus: 1 for a wall that does not relax. The
-gas in cavity and line takes up the volume, v = -p (C_gas + Y/s). So
+wall's volume compliance at constant x, b a constant, k(s) the wall's modulus over the relaxed modulus: 1 for a wall
+that does not relax. Gas of compliance C_gas and a line of admittance Y take up the volume, v = -p (C_gas + Y/s). So
 
     p/x = b / (1 + k (C_gas + Y/s)/C).
 
@@ -27,7 +27,7 @@ LineElement = Duct | GasVolume
 
 @dataclass(frozen=True, slots=True)
 class GasLine:
-    """Ducts and volumes in series, closed at the gauge behind the last one."""
+    """Ducts and volumes in series from the cavity on, closed at the gauge behind the last one, with their air."""
 
     elements: tuple[LineElement, ...]
     air: AirState
@@ -43,7 +43,7 @@ class GasLine:
         return sum(element.length for element in self.elements if isinstance(element, Duct))
 
     def seen(self, s: Complex) -> LineEnd:
-        """Admittance of the line at the cavity, and pressure ratio of gauge to cavity, at s (n,)."""
+        """Admittance of the line at the cavity, and pressure at the gauge over that in the cavity, at s (n,; 1/s)."""
         end = LineEnd(np.zeros_like(s), np.ones_like(s))
         ducts = [element for element in self.elements if isinstance(element, Duct)]
         rows = list(profiles(ducts, s, self.air))
@@ -57,7 +57,7 @@ class GasLine:
 
 @dataclass(frozen=True, slots=True)
 class SensorDynamics:
-    """A state for small changes.
+    """A state of a sensor, with what responds to small changes about it.
 
     Attributes:
         cavity: The gas under the dome.
@@ -81,16 +81,16 @@ class SensorDynamics:
 
     @property
     def gas_share(self) -> float:
-        """Isothermal compliance of all the gas divided by the compliance of the wall."""
+        """Isothermal compliance of all the gas over that of the wall; inf for a wall of compliance 0."""
         slow = self.stiffening * (self.cavity.volume + self.line.volume) / self.line.air.pressure
         return slow / self.wall_compliance if self.wall_compliance else np.inf
 
     def gain(self, s: Complex) -> Complex:
-        """Pressure at the gauge over that of a slow change, at nonzero s (n,) in 1/s with a real part of at least 0."""
+        """Pressure at the gauge over that of a slow change, (n,), at nonzero s (n,; 1/s) with a real part >= 0."""
         return self.both(s)[1]
 
     def both(self, s: Complex) -> tuple[Complex, Complex]:
-        """Pressures in the cavity and at the gauge, each over that of a slow change, (n,) each."""
+        """Pressures in the cavity and at the gauge, each over that of a slow change, at s as in `gain`, (n,) each."""
         pressure = self.line.air.pressure
         gas = self.cavity.volume / pressure if self.isothermal else self.cavity.compliance(s, self.line.air)
         behind, transfer = self.line.volume / pressure + np.zeros_like(s), np.ones_like(s)
@@ -105,21 +105,21 @@ class SensorDynamics:
         return cavity, cavity * transfer
 
     def _modulus(self, s: Complex) -> Complex:
-        """Modulus of the wall over the relaxed modulus."""
+        """Modulus of the wall over the relaxed modulus at s, (n,)."""
         value = self.stiffening + np.zeros_like(s)
         for excess, time in zip(self.excess, self.times, strict=True):
             value = value + excess * s * time / (1.0 + s * time)
         return value
 
     def at_once(self) -> SensorDynamics:
-        """This sensor with an elastic wall of the instantaneous stiffness; its gain refers to the slow reading with
+        """The sensor with an elastic wall of the instantaneous stiffness; its gain is relative to the slow reading with
         that wall."""
         stiff = self.stiffening + sum(self.excess)
         return replace(self, excess=(), times=(), stiffening=stiff)
 
     @property
     def fast_wall(self) -> float:
-        """Reading over the slow reading for a change that is fast for the wall and slow for the gas."""
+        """Reading over the slow reading for a change that is fast for the wall's relaxation and slow for the gas."""
         slow, fast = self.gas_share, self.at_once().gas_share
         return 1.0 if np.isinf(slow) else (1.0 + slow) / (1.0 + fast)
 

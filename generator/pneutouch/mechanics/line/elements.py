@@ -27,7 +27,7 @@ from pneutouch.arrays import Complex
 from pneutouch.errors import InputError
 
 ADIABATIC = 1.4
-"""Heat capacity ratio of air, a diatomic gas with rigid molecules: 7/5."""
+"""Ratio gamma of the heat capacities of air, a diatomic gas with rigid molecules: 7/5."""
 
 REFERENCE_TEMPERATURE = 293.15
 """Reference temperature, K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
@@ -53,7 +53,7 @@ _TEMPERATURES = (200.0, 400.0)
 
 @dataclass(frozen=True, slots=True)
 class AirState:
-    """Air at an absolute ``pressure`` (MPa) and a ``temperature`` (K). Raises InputError outside of 200 to 400 K."""
+    """Air at absolute ``pressure`` (MPa) and ``temperature`` (K). Raises InputError unless above 0 and 200 to 400."""
 
     pressure: float
     temperature: float = REFERENCE_TEMPERATURE
@@ -114,7 +114,7 @@ _TERMS = 16
 
 
 def second_over_zeroth(x: Complex) -> Complex:
-    """Ratio I2(x)/I0(x) for x of any shape, with a positive real part not smaller than the imaginary part.
+    """Ratio I2(x)/I0(x) for x of any shape, with a positive real part at least as large as the imaginary part.
 
     Continued fraction I_k/I_(k-1) = 1/(2 k/x + I_(k+1)/I_k): Abramowitz and Stegun (1964), 9.6.26; asymptotic series:
     9.7.1. No cancellation for small x, where the ratio is x^2/8.
@@ -152,11 +152,11 @@ def _series(order: int, x: Complex) -> Complex:
 
 
 _SMALL = 0.05
-"""Argument below which the closed form for a ball has fewer digits than its series to the sixth power."""
+"""Argument below which `_isothermal_share` uses a series to the sixth power, more exact there than the closed form."""
 
 
 class LineEnd(NamedTuple):
-    """A line from a place to its end: admittance (mm3/(MPa s)), and pressure at the end over that at the place."""
+    """A line from a place to its end: admittance (mm3/(MPa s)), pressure at the end over that at the place, (n,)."""
 
     admittance: Complex
     transfer: Complex
@@ -164,22 +164,22 @@ class LineEnd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Duct:
-    """A round tube, mm."""
+    """A round tube; length and radius in mm."""
 
     length: float
     radius: float
 
     @property
     def volume(self) -> float:
-        """Volume, mm3."""
+        """Volume inside, mm3."""
         return math.pi * self.radius**2 * self.length
 
     def impedance(self, s: Complex, air: AirState) -> Complex:
-        """Series impedance per length, MPa s/mm4; Poiseuille's 8 mu/(pi a^4) for small s."""
+        """Series impedance per length at s (n,), MPa s/mm4; Poiseuille's 8 viscosity/(pi a^4) for small s."""
         return self._impedance(s, air, profiles([self], s, air)[0, 0])
 
     def admittance(self, s: Complex, air: AirState) -> Complex:
-        """Shunt admittance per length, mm2/(MPa s)."""
+        """Shunt admittance per length at s (n,), mm2/(MPa s)."""
         return self._admittance(s, air, profiles([self], s, air)[0, 1])
 
     def before(self, end: LineEnd, s: Complex, air: AirState, profile: Complex) -> LineEnd:
@@ -202,7 +202,7 @@ class Duct:
 
 
 def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
-    """Bessel ratios I2/I0 for momentum and heat in ducts (k,) at s (n,), (k, 2, n); one call for all, for speed."""
+    """Bessel ratios I2/I0 for momentum and heat, (k, 2, n), in k ducts at s (n,); one call for all, for speed."""
     across = np.array([duct.radius for duct in ducts])[:, None, None]
     diffusivity = np.array([air.kinematic_viscosity, air.thermal_diffusivity])[:, None]
     return second_over_zeroth(across * np.sqrt(np.asarray(s, dtype=complex) / diffusivity))
@@ -210,10 +210,10 @@ def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
 
 @dataclass(frozen=True, slots=True)
 class GasVolume:
-    """A closed space of a volume in mm3, at one pressure, that exchanges heat with walls of an area in mm2.
+    """A space of ``volume`` V (mm3) at one pressure that exchanges heat with walls of the area ``surface`` S (mm2).
 
     The heat exchange is that of a ball of radius 3 V/S: exact for a ball, and for any shape while the thermal boundary
-    layer is thin. Without a surface the space is a ball of this volume.
+    layer is thin. Without a surface (None) the space is a ball of this volume.
     """
 
     volume: float
@@ -227,7 +227,7 @@ class GasVolume:
         return 3.0 * self.volume / self.surface
 
     def compliance(self, s: Complex, air: AirState) -> Complex:
-        """Volume change over pressure change, mm3/MPa: V/p for slow and V/(gamma p) for fast changes."""
+        """Volume change over pressure change at s (n,), mm3/MPa: V/p for slow and V/(gamma p) for fast changes."""
         across = np.asarray(self.ball_radius * np.sqrt(s / air.thermal_diffusivity), dtype=np.complex128)
         share = _isothermal_share(across)
         return np.asarray(self.volume / (ADIABATIC * air.pressure) * (1.0 + (ADIABATIC - 1.0) * share))
@@ -238,7 +238,7 @@ class GasVolume:
 
 
 def _isothermal_share(x: Complex) -> Complex:
-    """Share 3 (x coth x - 1)/x^2 of the gas in a ball that keeps the wall's temperature."""
+    """Share 3 (x coth x - 1)/x^2 of the gas in a ball that keeps the wall's temperature, x as in `compliance`."""
     near = np.abs(x) < _SMALL
     safe = np.where(near, 1.0, x)
     decay = np.exp(-2.0 * safe)

@@ -21,16 +21,16 @@ HALF_POWER = 0.5**0.5
 """Gain at -3 dB; its inverse is the gain at +3 dB."""
 
 TOLERANCE = 0.05
-"""Deviation of the gain from its slow value that limits the narrower band."""
+"""Greatest deviation of the gain from its slow value, 1, in the band ``within_tolerance``."""
 
 LINE, GAS, WALL = "line", "heat exchange of the gas", "relaxation of the wall"
-"""Effects that can end the narrower band."""
+"""Effects that can end the band ``within_tolerance``."""
 
 _SLOWEST = 1.0e-4
 """Lowest frequency considered, Hz: a change over some hours."""
 
 _BEYOND = 4.0
-"""Highest frequency considered, in half-wave resonances of the ducts, which bound the first resonance."""
+"""Highest frequency considered, over the half-wave resonance of the ducts, which bounds the first resonance."""
 
 _NO_DUCT = 1.0e4
 """Highest frequency considered for a line without a duct, Hz."""
@@ -51,7 +51,7 @@ class BandFigures:
         resonance: First maximum of the gain at the gauge, with the wall at its instantaneous stiffness.
         resonance_gain: Gain at the resonance, over the slow gain with the same wall.
         bandwidth: Frequency up to which that gain is within 3 dB: it falls in a damped line, and rises to a resonance.
-        within_tolerance: Frequency up to which the gain, with relaxation of the wall, is within `TOLERANCE` of slow.
+        within_tolerance: Frequency up to which the gain, with relaxation of the wall, is within `TOLERANCE` of 1.
         limited_by: Effect that ends the band ``within_tolerance``: `LINE`, `GAS` or `WALL`.
         highest: Highest frequency considered.
     """
@@ -65,7 +65,7 @@ class BandFigures:
 
 
 def band_figures(dynamics: SensorDynamics) -> BandFigures:
-    """Band figures of a state."""
+    """Resonance, bandwidth and band within the tolerance of a state."""
     fast, top = dynamics.at_once(), highest_frequency(dynamics)
     grid = np.geomspace(_SLOWEST, top, int(_POINTS_A_DECADE * np.log10(top / _SLOWEST)))
     gain = gain_at(fast, grid)
@@ -85,7 +85,7 @@ def highest_frequency(dynamics: SensorDynamics) -> float:
 
 
 def gain_at(dynamics: SensorDynamics, frequency: Array) -> Array:
-    """The gain at frequencies in Hz, (n,)."""
+    """Magnitudes of the gain (n,) at frequencies (n,), Hz."""
     return np.abs(dynamics.gain(on_axis(frequency)))
 
 
@@ -99,7 +99,7 @@ def _first(where: Flags) -> int | None:
 
 
 def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | None:
-    """Frequency of the first maximum inside the grid, located by refinement however sharp it is; None without one."""
+    """Frequency (Hz) of the first maximum of ``gain`` inside ``grid``, located by refinement; None without one."""
     # Where the gain is 1, rounding produces maxima.
     at = _first((gain[1:-1] > (1.0 + _ROUNDING) * gain[:-2]) & (gain[1:-1] > gain[2:]))
     if at is None:
@@ -113,7 +113,7 @@ def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | N
 
 
 def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Array]) -> float | None:
-    """Lowest frequency at which ``excess`` of the gain turns positive, by interval refinement; None if none does."""
+    """Lowest frequency (Hz) at which ``excess``, a function of the gain, turns positive; None if it does not."""
     at = _first(excess(gain_at(dynamics, grid)) > 0.0)
     if at is None:
         return None
@@ -126,7 +126,7 @@ def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Arr
 
 
 def _limit(dynamics: SensorDynamics, frequency: float) -> str:
-    """Name of the effect that changes the gain most at a frequency when it acts by itself."""
+    """Name of the effect that, acting alone, changes the gain most at a frequency (Hz)."""
     elastic = replace(dynamics, excess=(), times=())
     alone = {
         LINE: replace(elastic, isothermal=True),
@@ -187,7 +187,7 @@ def through(gain: Callable[[Complex], Complex], signal: Array, step: float, *, s
 
 
 def step_figures(dynamics: SensorDynamics) -> StepFigures:
-    """Step response of a state with its delay, rise time and overshoot."""
+    """Response of a state to a step, with its delay, rise time and overshoot."""
     fast = dynamics.at_once()
     time, reading = step_response(fast, _PERIODS / _leaving(fast))
     overshoot = max(0.0, float(reading.max()) - 1.0)
@@ -198,7 +198,7 @@ def step_figures(dynamics: SensorDynamics) -> StepFigures:
 
 
 def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Array]:
-    """Time since the step (s), from slightly before it, and reading over its final value, (n,) each."""
+    """Time (s) since the step, from just before it over a duration (s), and reading over its final value, (n,) each."""
     step, before = duration / _STEPS, _STEPS // 64
     signal = np.ones(_STEPS)
     signal[:before], signal[before] = 0.0, 0.5
@@ -207,7 +207,7 @@ def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Arr
 
 
 def _leaving(dynamics: SensorDynamics) -> float:
-    """Frequency in Hz at which the line changes the gain by a tenth against gas and wall without line effects."""
+    """Frequency (Hz) at which the gain first differs by a tenth from that with the line as a mere volume."""
     top = highest_frequency(dynamics)
     grid = np.geomspace(1e-5 * top, top, 200)
     off = np.abs(gain_at(dynamics, grid) / gain_at(replace(dynamics, lumped=True), grid) - 1.0) > 0.1
@@ -215,7 +215,7 @@ def _leaving(dynamics: SensorDynamics) -> float:
 
 
 def _reaches(time: Array, reading: Array, share: float) -> float:
-    """Time at which the response first reaches a share of its final value."""
+    """Time (s) at which the response first reaches a share of its final value; the last time if it does not."""
     k = int(np.argmax(reading >= share))
     if k == 0:
         return float(time[-1])

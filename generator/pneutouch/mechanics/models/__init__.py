@@ -1,1 +1,1 @@
-"""The models of a sensor, one file each, behind one interface and in one table (`choice`)."""
+"""The models of a sensor, one file each, with one interface (`interface`) and one table (`choice`)."""

@@ -1,10 +1,10 @@
-"""Errors of the models, as measured (docs/background/accuracy.md), and assumptions of the finite elements."""
+"""Numerical errors of the models (docs/background/accuracy.md), and assumptions of the finite elements."""
 
 from pneutouch.mechanics.sensor import IndentationProtocol, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 
 HARMONICS_SETTLED = 0.01
-"""Share by which the last increase of the harmonics' order may change sensitivity, force and pressure."""
+"""Greatest relative change of sensitivity, force and pressure by the last increase of the harmonics' order."""
 
 SENSITIVITY_DISCRETISATION = 0.011
 LIMIT_DISCRETISATION = 0.002
@@ -16,8 +16,8 @@ it, against a refined mesh (docs/background/contact.md): 0.002 where the range e
 ends it."""
 
 TABULATION = 0.0075
-"""Greatest relative error of the atlas's sensitivity against the solid where `auto` uses the atlas: away from buckling,
-tearing and ranges below 0.2 R0 (docs/background/atlas.md); checked by `make check-slow`."""
+"""Greatest relative error of the atlas's sensitivity against the solid where `auto` uses the atlas: not near buckling
+or tearing, and not for ranges below 0.2 R0 (docs/background/atlas.md); checked by `make check-slow`."""
 
 _MEMBRANE = 17.0
 """Greatest relative error of the membrane's sensitivity against the solid; the membrane has no bending stiffness."""
@@ -54,7 +54,7 @@ def discretised(
     sensitivity_relative: float = SENSITIVITY_DISCRETISATION,
     sensitivity_tabulation_relative: float | None = None,
 ) -> ErrorEstimate:
-    """Error estimate of the finite elements; the atlas adds the error of its table."""
+    """Error estimate of the finite elements; ``sensitivity_tabulation_relative`` is the error of the atlas's table."""
     return ErrorEstimate(
         sensitivity_relative=None,
         limit_pressure_relative=LIMIT_DISCRETISATION,
@@ -65,7 +65,7 @@ def discretised(
 
 
 def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
-    """Assumptions for a wall of full stiffness; ``body`` describes the solved problem."""
+    """Assumptions of the finite elements for a sensor; ``body`` describes the body and what is checked, in words."""
     largest = sensor.wall.largest_stretch
     fitted = "" if largest is None else f", fitted to tension up to a stretch of {largest:g}"
     law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"
@@ -76,7 +76,7 @@ def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
 
 
 def _edge(protocol: IndentationProtocol) -> str:
-    """Edge that the solid gives to the pressing object, in words."""
+    """Edge that the solid gives to the plate or other object, in words."""
     if protocol.body is not None:
         return "beyond its edge, or flanks of 60 degrees, the object turns up as a parabola; there the range ends"
     if protocol.plate_rim is not None:

@@ -1,4 +1,4 @@
-"""The model ``atlas``: results of the solid, interpolated for a sensor and returned as by every model."""
+"""The model ``atlas``: results of the solid, interpolated for a sensor."""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -39,7 +39,7 @@ _TABULATION_SUMMARY = (
     "of a refined mesh."
 )
 _TOGETHER = 500
-"""Number of sensors in one pass: more would take more memory and no less time."""
+"""Number of sensors in one pass: with more, a pass takes more memory and no less time."""
 
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
@@ -66,16 +66,16 @@ _LIMITATIONS = {
 
 
 class AtlasTables(SensorModel):
-    """The shipped atlas."""
+    """The shipped atlas as a model."""
 
     name = "atlas"
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor lies outside the box of the atlas, or None."""
+        """Reason why the atlas does not cover a sensor, or None if it does."""
         return outside_atlas(sensor)
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers from the tables, in one pass for all sensors with the same number of steps."""
+        """Answers from the tables; sensors with the same number of steps are computed together."""
         answers: list[Answered | None] = [None] * len(sensors)
         order = sorted(range(len(sensors)), key=lambda i: sensors[i].protocol.steps)
         for _, same in groupby(order, key=lambda i: sensors[i].protocol.steps):
@@ -88,7 +88,7 @@ class AtlasTables(SensorModel):
         return [answer for answer in answers if answer is not None]
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Errors of the solid's mesh plus that of the table."""
+        """Errors of the solid's mesh, and the error of the table."""
         return discretised(_TABULATION_SUMMARY, sensitivity_tabulation_relative=TABULATION)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
@@ -160,7 +160,7 @@ def _state(
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
-    """Event that ends the range, and a warning of creasing."""
+    """Event that ends the range, by its number ``end`` in `ENDS`, and one of creasing, if any, in order of travel."""
     happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
     points = [PathPoint(float(x), float(y)) for x, y in zip(depth, field["fold"], strict=True)]
     pairs = zip([points[0], *points], points, strict=False)
@@ -171,7 +171,7 @@ def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -
 
 
 def _inflation(sensor: Sensor, slices: AtlasSlices, wall: int) -> tuple[InflationCurve, LimitPoint, float | None]:
-    """Curve of free inflation to slightly beyond the limit point, the limit point, and the pressure at break strain."""
+    """Inflation to slightly beyond the limit point, the limit point, and the pressure (MPa) at break strain or None."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
     k = np.full(nu.size, wall)

@@ -23,28 +23,28 @@ CLOSURES = ("variational", "printed")
 """Closures of the contact in the membrane model."""
 
 USUAL = "usual"
-"""Name for the model used if none is named: harmonic for contact off the axis, else the solid."""
+"""Name for the default model of a sensor (`usual_model`)."""
 
 DEFAULT_TOLERANCE = 0.02
 
 
 @dataclass(frozen=True)
 class ModelSequence:
-    """Models to try, cheapest first, and the reasons why others were passed over."""
+    """Names of the models to try, cheapest first, and texts that say why others were passed over."""
 
     models: tuple[str, ...]
     passed: tuple[str, ...]
 
 
 def model_named(name: str) -> SensorModel:
-    """A model of the table. Raises InputError for an unknown name."""
+    """The model of a name in `MODELS`. Raises InputError for an unknown name."""
     if name not in MODELS:
         raise InputError(f"unknown model.{nearest(name, MODEL_CHOICES)}", key="model", value=name)
     return cast(SensorModel, import_module(MODELS[name]).MODEL)
 
 
 def outside(name: str, sensor: Sensor) -> str | None:
-    """Reason why a model of the table does not cover a sensor, or None if it does."""
+    """Reason why the model of a name in `MODELS` does not cover a sensor, or None if it does."""
     return model_named(name).covers(sensor)
 
 
@@ -54,14 +54,14 @@ def stated_error(name: str, sensor: Sensor) -> float:
 
 
 def usual_model(sensor: Sensor) -> str:
-    """Name of the model for a sensor if none is named."""
+    """Name of the default model: ``harmonic`` for contact off the axis, else ``solid``."""
     return "solid" if sensor.protocol.off_axis is None else "harmonic"
 
 
 def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
-    """The models up to the usual one whose stated error meets a tolerance (a fraction), cheapest first.
+    """The models, cheapest first up to the usual one, that cover a sensor and meet a tolerance (a fraction).
 
-    Raises InputError for a tolerance that none can state, and where no model covers the sensor.
+    Raises InputError if the tolerance is below the usual model's stated error, or if no model covers the sensor.
     """
     best = usual_model(sensor)
     least = stated_error(best, sensor)
@@ -85,7 +85,7 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
 
 
 def remedy(sensor: Sensor) -> str:
-    """Advice for a sensor that a model cannot answer: another model, or a setting that a model covers."""
+    """Advice, in words, if a model cannot predict a sensor: another model, or a setting that a model covers."""
     usual = usual_model(sensor)
     return (
         f"take `model` auto or {usual}" if outside(usual, sensor) is None else "take `clamp` base, or central contact"
@@ -93,14 +93,14 @@ def remedy(sensor: Sensor) -> str:
 
 
 class ModelOptions(TypedDict):
-    """Name of the model of a prediction and, for auto, the numerical error as a fraction that it must meet."""
+    """Name of the model for a prediction, and the numerical error (a fraction) that it must meet if that is auto."""
 
     model: str
     tolerance: float
 
 
 def model_options(model: str | None, tolerance: float | str | None) -> ModelOptions:
-    """Model and tolerance of a prediction; with a tolerance the model is auto, and another raises InputError."""
+    """Options from a model's name (None: usual) and a tolerance, with which only auto is accepted (else InputError)."""
     if tolerance is None:
         return {"model": model or USUAL, "tolerance": DEFAULT_TOLERANCE}
     if model not in (None, "auto"):
@@ -110,7 +110,7 @@ def model_options(model: str | None, tolerance: float | str | None) -> ModelOpti
 
 
 def parse_tolerance(text: str) -> float:
-    """Tolerance as a fraction from a text such as ``2%`` or ``0.02``. Raises InputError."""
+    """Tolerance as a fraction, above 0 and at most 1, from a text such as ``2%`` or ``0.02``. Raises InputError."""
     number = text.strip().removesuffix("%")
     try:
         value = plain_number(number) / (100.0 if text.strip().endswith("%") else 1.0)

@@ -55,12 +55,12 @@ class HarmonicElements(SensorModel):
     name = "harmonic"
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor is not covered: a flange held as printed."""
+        """Reason why a sensor is not covered, a flange held as printed, or None if it is covered."""
         held = sensor.dome.flange is not None
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric" if held else None
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers by `harmonic_result`, one sensor at a time."""
+        """Answers of `harmonic_result`, one sensor at a time."""
         return one_by_one(lambda *one: ModelAnswer(harmonic_result(*one)), sensors, driving_pressures)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
@@ -76,10 +76,10 @@ MODEL = HarmonicElements()
 
 
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
-    """Inflate with the solid, then press off the axis at every driving pressure (MPa, ascending).
+    """Inflate with the solid, then press with harmonics at every driving pressure (MPa, ascending).
 
-    Raises ComputationError if no equilibrium is found, or if the figures do not settle.
-    """
+    Raises BeyondLimitError beyond the limit point, InputError if the object would reach the connector, and
+    ComputationError if no equilibrium is found or the figures do not settle."""
     return solid_result(sensor, driving_pressures, pressed_state=_state)
 
 
@@ -110,7 +110,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
 
 
 def off_axis_press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
-    """Set up the sensor's test on one free state, with its object in place.
+    """Press of the sensor's test from one free state, with its object in place.
 
     Raises InputError for an object that would reach the connector within the depth.
     """
@@ -141,7 +141,7 @@ def _check_clearance(sensor: Sensor, probe: StrainProbe, free: FreeState) -> Non
 
 
 def _free_travel(sensor: Sensor, probe: StrainProbe, free: FreeState) -> float:
-    """Travel after first contact at which the lowest point of the object is at the connector, mm."""
+    """Travel (mm) after first contact at which the lowest point of the object is at the connector's top."""
     test, base = sensor.protocol, sensor.dome.base
     leaning = test.plate_radius * np.sin(test.tilt) if test.body is None else 0.0
     top = base.ring_height if base is not None and test.body is None else 0.0
@@ -150,7 +150,7 @@ def _free_travel(sensor: Sensor, probe: StrainProbe, free: FreeState) -> float:
 
 class _Curve(NamedTuple):
     """Force (N) and pressure rise (MPa) at indentations (mm) on equal steps of a range, and the greatest sideways force
-    (N) of the shear that follows, or None."""
+    (N) of the sideways motion after it, None without one."""
 
     indentation: Array
     force: Array
@@ -159,7 +159,7 @@ class _Curve(NamedTuple):
 
     @property
     def sensitivity(self) -> float | None:
-        """Sensitivity (kPa/N); None if the range has none."""
+        """Sensitivity (kPa/N) of the range; None if it is undetermined."""
         fit = figures(self.indentation, self.force, self.rise / KPA)
         return None if fit is None else fit.sensitivity
 
@@ -171,8 +171,8 @@ def _curve(sensor: Sensor, pressed: OffAxisPath) -> _Curve:
 
 
 def change(before: _Curve, after: _Curve) -> float:
-    """Greatest relative change of sensitivity, of force and pressure rise at the end of the common range, and of the
-    greatest sideways force of a shear."""
+    """Greatest of the relative changes from ``before`` to ``after`` in sensitivity, in force and pressure rise at the
+    end of the common range, and in the greatest sideways force."""
     end = min(before.indentation[-1], after.indentation[-1])
     pairs = [
         (float(np.interp(end, before.indentation, old)), float(np.interp(end, after.indentation, new)))
@@ -186,7 +186,7 @@ def change(before: _Curve, after: _Curve) -> float:
 
 
 def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor: Sensor) -> float:
-    """Change relative to a result with fewer harmonics, which is solved only at a few states of the range; the
+    """`change` from a result with harmonics to order ``coarse``, which is solved only at a few states of the range; the
     difference of the curves is linear between them. Infinite if one of these states has no equilibrium."""
     after = _curve(sensor, pressed)
     inside = [s for s in pressed.path if s.indentation <= after.indentation[-1] * (1.0 + 1e-9)]
@@ -201,7 +201,7 @@ def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor:
 
 
 def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
-    """Set up the sensor's test with its object in place, without the check of clearance."""
+    """Press of the sensor's test with its object in place, without the check of clearance."""
     press, test, solid = press_settings(sensor), sensor.protocol, probe.solid
     body = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body
     offset = test.offset / solid.length
@@ -224,7 +224,7 @@ def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:
 def _record(
     sensor: Sensor, pressure: float, free: FreeState, press: OffAxisPress, pressed: OffAxisPath, last_change: float
 ) -> SensorState:
-    """State of a sensor in the form of a prediction."""
+    """Record of one press for a prediction; ``last_change``: of the figures when the order was last raised."""
     happened, end = reported_events(pressed.events), _range_end(sensor, pressed)
     return SensorState(
         driving_pressure=pressure,
@@ -252,7 +252,7 @@ def _record(
 
 
 def _to_end(pressed: OffAxisPath, end: float) -> RangeCurve:
-    """Curve interpolated between the solved states, to the end of the range."""
+    """Curve at `_READ` equal steps to the end of the range (mm), interpolated between the solved states."""
     grid = np.linspace(0.0, end, _READ + 1)
     return RangeCurve(grid, *curve_between(pressed.path, grid))
 

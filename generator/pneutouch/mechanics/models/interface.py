@@ -15,8 +15,8 @@ from pneutouch.results.prediction import ErrorEstimate
 
 
 class Limitation(NamedTuple):
-    """Reason why `auto` must not use an answer; ``fatal`` if nothing may use it, ``beyond_error`` if the stated error
-    does not hold for it."""
+    """Reason why the model choice `auto` may not use an answer; ``fatal``: it may not be used at all; ``beyond_error``:
+    the stated error does not hold for it."""
 
     why: str
     fatal: bool
@@ -24,20 +24,20 @@ class Limitation(NamedTuple):
 
 
 class ModelAnswer(NamedTuple):
-    """Result of a model for one sensor, and its limitation or None."""
+    """Result of a model for one sensor, and its limitation; None: it has none."""
 
     result: ModelResult
     limitation: Limitation | None = None
 
 
 Answered = ModelAnswer | PneutouchError
-"""An answer, or the error raised for a sensor without an answer."""
+"""The answer for a sensor, or the error that stands for one."""
 
 
 class SensorModel(ABC):
     """A model of the sensor.
 
-    ``correctable``: True if the factors of a calibration, found against finite elements, apply to its force and rise.
+    ``correctable``: True if the factors of a calibration, found with finite elements, apply to its force and rise.
     ``holds_flange``: True if it clamps a flange as the connector does; other models clamp the base plane.
     """
 
@@ -47,43 +47,43 @@ class SensorModel(ABC):
 
     @abstractmethod
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why the model has no answer for a sensor, or None if the model covers it."""
+        """Reason why the model does not cover a sensor, or None if it does."""
 
     @abstractmethod
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers for sensors that the model covers, each at its own driving pressures (MPa, ascending).
 
-        A sensor without an answer, for instance beyond its limit point, gets an error instead; the others do not stop.
+        For a sensor without an answer, for instance beyond its limit point, the list has an error; no error is raised.
         """
 
     @abstractmethod
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Numerical errors of the model's answers."""
+        """Numerical errors of the model's answer for a sensor at driving pressures (MPa)."""
 
     @abstractmethod
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions specific to the model, in words."""
 
     def stated_error(self, sensor: Sensor) -> float:
-        """Relative numerical error in sensitivity that the model states."""
+        """Relative numerical error in sensitivity that the model states for a sensor."""
         return NUMERICAL[self.name]
 
     def answer_one(self, sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
-        """Answer for one sensor. Raises the error of a sensor without an answer."""
+        """Answer for one sensor at driving pressures (MPa, ascending). Raises the error if there is no answer."""
         (answer,) = self.answer([sensor], [driving_pressures])
         if isinstance(answer, PneutouchError):
             raise answer
         return answer
 
     def closed(self, closure: str) -> SensorModel:
-        """The model with a closure of the membrane's contact; the same model if it is not the membrane."""
+        """The membrane model with the named closure of its contact; any other model is returned unchanged."""
         return self
 
 
 def one_by_one(
     answer: Callable[[Sensor, Array], ModelAnswer], sensors: Sequence[Sensor], driving_pressures: Sequence[Array]
 ) -> list[Answered]:
-    """Answers of a model that takes one sensor at a time; errors are returned in place of answers."""
+    """Answers by ``answer``, a function for one sensor and its driving pressures; its errors stand for answers."""
 
     def tried(sensor: Sensor, pressures: Array) -> Answered:
         try:

@@ -1,4 +1,4 @@
-"""The model ``membrane``: the paper's theory run for a sensor, states I and II."""
+"""The model ``membrane``: the paper's theory for a sensor, inflated (state I) and pressed (state II)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ _ASSUMPTIONS = (
 )
 
 _NEAR_BASE = 0.98
-"""Share of R0 at which the contact counts as having reached the base: beyond it no space is left for the free arc."""
+"""Contact radius over R0 at which the contact reaches the base: beyond it no space is left for the free arc."""
 
 _NO_LAW = Limitation("it covers neither other laws, nor a clamped flange", False)
 
@@ -51,12 +51,12 @@ class MembraneTheory(SensorModel):
     correctable = False
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why the theory does not cover a sensor (other contact or shape, graded wall), or None."""
+        """Reason why the theory does not cover a sensor (other contact or shape, graded wall), or None if it does."""
         graded = None if sensor.wall.grade is None else "the wall is graded along its arc"
         return sensor.protocol.other_contact or no_hemisphere(sensor.dome.shape) or graded
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers in closed form; a fitted law and a flange are ignored, which is stated as a limitation."""
+        """Answers in closed form; a law and a flange are ignored, which the answer states as its limitation."""
         return one_by_one(self._answer, sensors, driving_pressures)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
@@ -82,7 +82,7 @@ MODEL = MembraneTheory()
 
 
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-    """Errors due to constant curvature in state I, relative; for the heights the greatest."""
+    """Relative errors by constant curvature in state I at driving pressures (MPa); of the heights the greatest."""
     limit_pressure, limit_height = limit_point_errors()
     scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
     heights = height_errors(driving_pressures * scale)
@@ -100,7 +100,7 @@ def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> Er
 
 
 _FINE = 8
-"""Factor by which the grid that events are searched on is finer than the steps."""
+"""Number of points per step at which events are searched."""
 
 
 def inflation_curve(sensor: Sensor) -> InflationCurve:
@@ -113,12 +113,12 @@ def inflation_curve(sensor: Sensor) -> InflationCurve:
 
 
 def cap_volume(apex: Array, radius: float) -> Array:
-    """Volume of a spherical cap on a base circle, mm3."""
+    """Volume (mm3) of a spherical cap of height ``apex`` (mm) on a base circle of ``radius`` (mm)."""
     return np.asarray(np.pi / 6 * apex * (3 * radius**2 + apex**2))
 
 
 def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[SensorState, ...]:
-    """States after inflation to every driving pressure (MPa, ascending) and a press in ``protocol.steps`` equal steps.
+    """States at every driving pressure (MPa, ascending), pressed in ``protocol.steps`` equal steps, by a named closure.
 
     Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not jump when
     an event passes a step.
@@ -186,7 +186,7 @@ def _events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure:
 
 
 def _crossing(indentation: Array, margin: Array) -> float:
-    """Indentation at which the margin turns positive, by linear interpolation between the steps."""
+    """Indentation (mm) at which ``margin`` turns positive, by linear interpolation between points (n,)."""
     after = int(np.argmax(margin > 0)) if margin[0] <= 0 else 1 + int(np.argmax(margin[1:] > 0))
     before, here = margin[after - 1], margin[after]
     if before > 0 or here == before:

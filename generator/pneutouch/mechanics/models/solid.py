@@ -1,7 +1,6 @@
-"""The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor.
+"""The model ``solid``: the paper's finite element study (section 2-C and Supplement B) for a sensor.
 
-Stretches of the wall beyond the range that its law was fitted over are a limit of the inflation and an event of the
-press.
+A wall stretched beyond the range over which its law was fitted is a limit of the inflation and an event of the press.
 """
 
 from __future__ import annotations
@@ -66,15 +65,15 @@ class SolidElements(SensorModel):
     holds_flange = True
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Deviation of the contact from the axis, which the solid does not cover, or None."""
+        """Reason why the contact is not axisymmetric, which the solid does not cover, or None if it is."""
         return sensor.protocol.off_axis
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers by `solid_result`, one sensor at a time."""
+        """Answers of `solid_result`, one sensor at a time."""
         return one_by_one(lambda *one: ModelAnswer(solid_result(*one)), sensors, driving_pressures)
 
     def stated_error(self, sensor: Sensor) -> float:
-        """Relative error of the mesh in sensitivity, which is greater under an object other than a plate."""
+        """Relative error of the mesh in sensitivity, which is greater for an object other than a plate."""
         return SENSITIVITY_DISCRETISATION if sensor.protocol.body is None else OBJECT_DISCRETISATION
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
@@ -84,7 +83,7 @@ class SolidElements(SensorModel):
         return discretised(_SUMMARY)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
-        """Assumptions of the solid, including the numbers of waves checked for."""
+        """Assumptions of the solid, with the numbers of waves around the axis that are checked."""
         waves = sensor.protocol.waves
         checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else NOT_CHECKED
         return solid_assumptions(sensor, f"{BODY}; {checked}")
@@ -100,7 +99,7 @@ def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tup
 
 
 def beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | None) -> list[Event]:
-    """Event of a wall pressed beyond the stretches that its law was fitted over; empty if these are not known."""
+    """Event, if any, at which a press exceeds ``largest`` as in `leaves_law`; empty also if ``largest`` is None."""
     if largest is None:
         return []
     tension = [probe.greatest_tension(state.positions / probe.solid.length) for state in pressed.path]
@@ -119,7 +118,7 @@ _DRAWN = 3.0
 """Radius over R0 to which an object is drawn."""
 
 _PAST_LIMIT = 1.6
-"""Multiple of the limit volume to which inflation continues: enough to show the falling branch."""
+"""Multiple of the limit point's volume to which inflation continues: enough to show the falling branch."""
 
 KINDS = {
     "unstable": ("loss of stability", True),
@@ -138,7 +137,7 @@ KINDS = {
     "sway": (SWAY, False),
     "lobes": (LOBES, False),
 }
-"""Names under which the solver's events are reported, and True if no figure may be fitted beyond them."""
+"""Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 
 class _CurvePoint(Protocol):
@@ -170,10 +169,10 @@ def solid_result(
 ) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
-    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/background/accuracy.md).
-    ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are needed.
-    ``pressed_state`` presses at a driving pressure in place of the axisymmetric solid.
-    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
+    ``cells`` is the number of cells along the arc; None: by wall ratio (docs/background/accuracy.md) and object.
+    ``past_limit`` is the multiple of the limit point's volume to which inflation goes on; 1 is enough for the figures.
+    ``pressed_state`` presses at one driving pressure; None: the axisymmetric solid does.
+    Raises BeyondLimitError beyond the limit point, ComputationError if no equilibrium is found.
     """
     probe = solid_probe(sensor, cells)
     run = inflate(probe.solid, past_limit=past_limit)
@@ -183,7 +182,7 @@ def solid_result(
 
 
 def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:
-    """The states of `solid_result` only: inflation ends at the highest driving pressure (MPa), in a stable state.
+    """The states of `solid_result` only: inflation goes no further than to the highest driving pressure (MPa).
 
     The stability around the axis, which changes no figure, is not checked.
     """
@@ -194,7 +193,7 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
 
 
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
-    """Model of the sensor's wall for the solid, with the probe of its strains."""
+    """Probe of the strains of the sensor's wall, with its finite elements; ``cells`` as in `solid_result`."""
     shape, flange, cells = sensor.dome.shape, sensor.dome.flange, cells or object_cells(sensor)
     if flange is None:
         mesh = dome(shape, arc=cells)
@@ -206,7 +205,7 @@ def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
 
 
 def _base(sensor: Sensor) -> RigidBase | None:
-    """Rigid base for the solid; if the flange is held as printed, only the part outside the flange."""
+    """Rigid base for the solid (None without one); for a printed flange the outer wall meets it outside the flange."""
     dome = sensor.dome
     if dome.base is None or dome.flange is None:
         return dome.base
@@ -214,7 +213,7 @@ def _base(sensor: Sensor) -> RigidBase | None:
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
-    """Function of the relative modulus over position, for the solid; None for a homogeneous wall."""
+    """Function that gives the relative modulus at positions (r, z), R0; None for a homogeneous wall."""
     if sensor.wall.grade is None:
         return None
     arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
@@ -229,7 +228,7 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
 
 
 def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
-    """Inflation curve by Hermite cubics over the volume through the solved states, with the solver's slopes."""
+    """Inflation curve on Hermite cubics over the volume, through the solved states with their slopes."""
     volume = run.volume
     grid = distinct(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
 
@@ -247,7 +246,7 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
 
 
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
-    """Driving pressures at which the limits are met on the rising branch, which pressure control can reach."""
+    """Driving pressures at which the limits are met on the rising branch of the inflation curve."""
     rupture = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
     broken, left = (_rising(run, place) for place in (rupture, leaves_law(probe, run, sensor.wall.largest_stretch)))
     return Limits(
@@ -259,7 +258,7 @@ def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
 
 
 def _rising(run: Inflation, place: tuple[float, float] | None) -> float | None:
-    """Pressure of a point (pressure, outer apex height) of the inflation, or None if beyond the limit point."""
+    """Pressure (MPa) of a place (pressure, outer apex height); None for None or a place beyond the limit point."""
     if place is None or (run.limit is not None and place[1] > run.limit.outer_apex):
         return None
     return place[0]
@@ -317,13 +316,13 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
 
 
 def reported_events(events: list[SolidEvent]) -> list[Event]:
-    """Solver events in their reported form, in the order of the travel."""
+    """The solver's events with their reported names, in the order of indentation."""
     reported = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in events]
     return sorted(reported, key=lambda event: event.indentation)
 
 
 def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Array]:
-    """Force (N) and pressure rise (MPa) at indentations ``grid`` (mm), by Hermite cubics through solved states."""
+    """Force (N) and pressure rise (MPa) at indentations ``grid`` (n,; mm), on Hermite cubics through solved states."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
     x, states = x[keep], [s for s, k in zip(path, keep, strict=True) if k]
@@ -334,13 +333,13 @@ def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Arra
 
 
 def _last(pressed: IndentationPath, end: float) -> PressState:
-    """The last solved state up to an indentation, mm."""
+    """The last solved state up to the indentation ``end``, mm."""
     return max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
 
 
 def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> PressedFace:
-    """Outer wall at positions (n_nodes, 2), mm, under an object given at first contact and lowered by an indentation
-    (mm)."""
+    """Pressed outer wall for drawing, at positions (n_nodes, 2), mm, under an object that is given at first contact and
+    lowered by an indentation (mm)."""
     # To draw in space, the wall is enough: nothing is solved here.
     from pneutouch.mechanics.harmonic.fields import Harmonics
     from pneutouch.mechanics.harmonic.object_contact import pressed_face

@@ -1,1 +1,1 @@
-"""Effects of the resin's relaxation and ageing on a sensor. Nothing is imported here: only the runs need the atlas."""
+"""Effects of the resin's relaxation and ageing on a sensor; no imports here, because only the runs need the atlas."""

@@ -1,11 +1,11 @@
-"""Press, hold and loop of every state of a sensor in each relaxation series of its resin.
+"""Press, hold and loop of a sensor at its driving pressures, for each relaxation series of its resin.
 
 For a contact that the atlas does not cover, the press is followed in time by the solid.
 
-The model is that of `follow`: p = p_I + int k(t - s) dP(s), F = int k(t - s) dF(s), with the wall pressure P and the
-force F of the elastic dome. At each time the contribution of the past is known, so the elastic dome has a supply of
-pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history of the plate: friction sticks, slips and
-reverses as it would.
+The model is that of `runs`: p = p_I + int k(t - s) dP(s), F = int k(t - s) dF(s), with the wall pressure P and the
+force F of the elastic dome. At each time the contribution of the past is known, so the elastic dome is filled by a gas
+of pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history of the plate: friction sticks, slips
+and reverses as it would.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from pneutouch.mechanics.viscous.runs import HOLD_TIMES, LoopRun, Memory, Relaxa
 from pneutouch.spec.material import Material
 
 _RAMP_STEPS, _LOOP_STEPS = 20, 24
-"""Numbers of steps of a ramp and of half a loop, at least half of those on the atlas: losses, widths and areas are
+"""Numbers of steps of a ramp and of half a loop, at least half of those in `runs`: losses, widths and areas are
 accurate to 0.3 percentage points, also with friction (`tests/mechanics/viscous/test_by_solid.py`)."""
 
 _CUTS = 5
@@ -42,8 +42,8 @@ _CUTS = 5
 
 @dataclass(frozen=True)
 class RelaxingGas:
-    """Trapped gas as a supply of the elastic dome: its pressure minus the contribution of the past, over the present
-    stiffness of the wall relative to the relaxed one."""
+    """Trapped gas as the filling of the elastic dome: its pressure minus ``past``, the contribution of the past, over
+    ``stiffness``, that of the wall now relative to the relaxed wall."""
 
     gas: Gas
     past: float
@@ -61,7 +61,7 @@ class RelaxingGas:
 
 
 class _Dome(NamedTuple):
-    """A sensor with its relaxed modulus, inflated and at first contact; nondimensional except ``start`` in MPa."""
+    """A sensor with its relaxed modulus, inflated, with the plate at first contact (``top``); ``start`` is in MPa."""
 
     solid: SolidModel
     follower: PathFollower
@@ -82,7 +82,7 @@ class _Point(NamedTuple):
 def relaxation_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[RelaxationRun]]:
-    """Press by the solid to ``depth`` mm at ``speed`` mm/s and hold, under the sensor's own contact.
+    """Press by the solid to ``depth`` (mm) at ``speed`` (mm/s) and hold, with the object and friction of the sensor.
 
     Driving pressures in MPa; lists by pressure, then series. `runs.relaxation` does the same by the atlas.
     """
@@ -92,7 +92,7 @@ def relaxation_by_solid(
 def loop_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[LoopRun]]:
-    """Press and retract by the solid as in `runs.loop`, under the sensor's own contact."""
+    """Press and retract by the solid as `runs.loop` by the atlas, with the object and friction of the sensor."""
     return [[_loop_pressed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
 
 
@@ -132,7 +132,8 @@ class _Run:
         self._now, self._down = _Point(0.0, 0.0, 0.0, 0.0), True
 
     def along(self, clock: Array, travel: Array) -> tuple[list[_Point], str | None]:
-        """Points at times (s) and travels (mm), beginning at first contact, and the reason if they end early."""
+        """Points at first contact and at times (s) and travels (mm), to where contact is lost or the run ends; and the
+        reason why it ended, None if it did not."""
         points = [self._now]
         for time, to in zip(clock.tolist(), travel.tolist(), strict=True):
             ended = self._reach(time, to)
@@ -145,7 +146,7 @@ class _Run:
         return points, None
 
     def _reach(self, time: float, travel: float, cuts: int = 0) -> str | None:
-        """Go to a time and travel, in shorter steps if the whole step finds no equilibrium; the reason if it fails."""
+        """Go to a time (s) and travel (mm), in shorter steps if needed; the reason if the run ends there, else None."""
         here, dome = self._now, self._dome
         height = dome.top - travel / dome.solid.length
         if abs(travel - here.travel) > LONGEST * dome.solid.length * (1.0 + 1e-9):
@@ -191,13 +192,13 @@ def _dome(sensor: Sensor, pressure: float) -> _Dome:
 
 
 RAMP_SPEED = 5.0
-"""Speed of the press before the hold, mm/s: our choice, the paper gives none."""
+"""Speed of the press before the hold, mm/s: a choice, the paper gives none."""
 
 LOOP_SPEEDS = (0.5, 5.0)
-"""Speeds of the loops, mm/s: our choice, a slow and a fast hand."""
+"""Speeds of the loops, mm/s: a choice, a slow and a fast hand."""
 
 DEPTH_SHARE = 0.5
-"""Depth over the inner height of the dome: our choice, the paper's relaxation test gives none. At greater depth, stiff
+"""Depth over the inner height of the dome: a choice, the paper's relaxation test gives none. At greater depth, stiff
 resins pressed fast buckle."""
 
 _KERNEL = "one relaxation for all stresses of the resin, that of small strain; no temperature dependence"
@@ -213,14 +214,13 @@ SOLID_BASIS = (
     "isothermal and sealed; the inflated dome has relaxed before contact",
     _KERNEL,
 )
-"""Model, in words, under a contact that the atlas does not cover."""
+"""Model, in words, for a contact that the atlas does not cover."""
 
 
 @dataclass(frozen=True)
 class ViscousRuns:
-    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` for state i in series j; MPa, depth in mm.
-
-    ``basis`` describes the model: `BASIS` or `SOLID_BASIS`.
+    """Runs of one sensor: ``held[i][j]`` and ``loops[speed][i][j]`` at driving pressure i (MPa) for the series of
+    ``sources[j]``; depth in mm, speed in mm/s. ``basis`` describes the model: `BASIS` or `SOLID_BASIS`.
     """
 
     sources: tuple[str, ...]
@@ -232,10 +232,10 @@ class ViscousRuns:
 
 
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
-    """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
+    """Runs of a sensor at driving pressures (MPa) to a depth (mm) for every relaxation series of its resin.
 
-    `prony.unknown` must return None for the sensor and its resin. A series whose relaxed modulus is outside the atlas
-    is left out if the file gives the instantaneous modulus. The solid follows a contact that the atlas does not cover.
+    `prony.unknown` must return None for the sensor and its resin. The solid follows a contact that the atlas does not
+    cover; for the others, a series is left out if the atlas does not cover the sensor with that relaxed modulus.
     """
     kept, held, loops = [], [], []
     by_solid = sensor.protocol.other_contact is not None
@@ -259,14 +259,14 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
-    """Depth of the runs in mm: a share of the dome's height, within the range of every state."""
+    """Depth (mm) of the runs: `DEPTH_SHARE` of the dome's height, at most the test's depth and every ``range_ends``."""
     return float(min(DEPTH_SHARE * sensor.dome.shape.height, sensor.protocol.depth, *range_ends))
 
 
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:
-    """Ratio of the modulus after a year, by hardness, and the resulting relative change of the sensitivity, (n,).
+    """Modulus after a year over the fresh one, by hardness, and the relative change of the sensitivity (n,) by it.
 
-    Raises InputError if the resin's hardness after a year is not known.
+    By the atlas, at n driving pressures (MPa). Raises InputError if the resin's hardness after a year is not known.
     """
     ratio = ageing_ratio(material)
     old = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)

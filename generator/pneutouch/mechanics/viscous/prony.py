@@ -15,7 +15,7 @@ from pneutouch.spec.material import Material
 
 @dataclass(frozen=True)
 class Prony:
-    """Relaxation G(t)/G_0 = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` names its origin."""
+    """Relaxation G(t)/G(0) = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` of the data."""
 
     shares: tuple[float, ...]
     times: tuple[float, ...]
@@ -23,22 +23,22 @@ class Prony:
 
     @property
     def relaxed_share(self) -> float:
-        """Ratio of the relaxed to the instantaneous modulus."""
+        """Relaxed modulus over instantaneous modulus."""
         return 1.0 - sum(self.shares)
 
     @property
     def excess(self) -> Array:
-        """Each term over the relaxed modulus, (terms,)."""
+        """Share of each term over that of the relaxed modulus, (terms,)."""
         return np.array(self.shares) / self.relaxed_share
 
     def modulus(self, time: Array) -> Array:
-        """Modulus at times (s, any shape) after a step of strain, over the relaxed modulus."""
+        """Modulus at times (s, array of any shape) after a step of strain, over the relaxed modulus."""
         decay = np.exp(-np.asarray(time)[..., None] / np.array(self.times))
         return np.asarray(1.0 + decay @ self.excess)
 
 
 def prony_series(material: Material) -> tuple[Prony, ...]:
-    """Relaxation data of a resin, one series per source; empty if there are none."""
+    """Relaxation series of a resin, one for each source of its data; empty without data."""
     return tuple(
         Prony(tuple(t.share for t in data.terms), tuple(t.time_s for t in data.terms), data.source)
         for data in material.relaxation
@@ -46,7 +46,7 @@ def prony_series(material: Material) -> tuple[Prony, ...]:
 
 
 def relaxed(sensor: Sensor, material: Material, series: Prony) -> Sensor:
-    """Sensor with its relaxed modulus; the material file states whether its modulus is relaxed or instantaneous."""
+    """The sensor with its relaxed modulus by a series; unchanged if the material's file states the relaxed one."""
     share = series.relaxed_share if material.shear_modulus_is == "instantaneous" else 1.0
     return sensor.replace(shear_modulus=share * sensor.wall.shear_modulus)
 
@@ -63,10 +63,10 @@ AGED = (
 
 
 def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
-    """Reason why relaxation and hysteresis cannot be predicted, or None if they can.
+    """Reason why relaxation and hysteresis of a sensor cannot be predicted, or None if they can.
 
-    The solid follows a contact that the atlas does not cover, unless it is off the axis or the wall has a law of its
-    own, whose constants are not scaled.
+    The solid follows a contact that the atlas does not cover, unless it is off the axis or the wall has another law
+    than the neo-Hookean one, whose constants are not scaled.
     """
     if not material.relaxation:
         return f"no relaxation data for {material.title}; no other resin's are put in their place"

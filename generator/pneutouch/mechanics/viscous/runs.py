@@ -1,4 +1,4 @@
-"""The two runs of a viscous sensor, press and hold, and press and retract; in mm, N, MPa and s.
+"""The two runs of a viscous sensor by the atlas, press and hold, and press and retract; in mm, N, MPa and s.
 
 Each follows a press in time: wall forces with memory, trapped gas, prescribed plate travel.
 
@@ -32,12 +32,11 @@ _NO_TRAVEL = 1.0e-9
 
 
 class ViscousPath(NamedTuple):
-    """Paths of n domes, (n, m) each; nondimensional by the relaxed modulus.
+    """Paths of n domes at m times, (n, m) each; nondimensional by R0 and the relaxed modulus.
 
-    elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: True if the state
-    and all states before it were found. folded: True if the wall buckled, or the gas does not hold it; other lost
-    states are outside the atlas.
-    """
+    nu: coordinate of the cavity volume, see `AtlasPress`. elastic_pressure, elastic_force: of the relaxed dome at the
+    same volume and plate height. known: True if this state and all before it were found. folded: True if the wall
+    buckled, or no volume balances the gas; other states that are not known are outside the atlas."""
 
     nu: Array
     pressure: Array
@@ -49,14 +48,15 @@ class ViscousPath(NamedTuple):
 
 
 class Memory:
-    """Convolution of pressure and force of n domes with k(t) - 1, linear in time within each step; terms (n, terms)."""
+    """Convolution of pressure and force of n domes with k(t) - 1, both linear in time within each step, from Prony
+    terms ``excess`` and ``times`` as in `follow`."""
 
     def __init__(self, excess: Array, times: Array) -> None:
         self._excess, self._times = excess, times
         self._held = np.zeros((2, *excess.shape))
 
     def step(self, seconds: Array) -> tuple[Array, Array, Array]:
-        """Decay and weight of each term over a step of (n,) s, and the sum of the weights, (n,)."""
+        """Decay and weight (n, terms) of each term over steps of ``seconds`` (n,), and the sums of the weights (n,)."""
         share = seconds[:, None] / self._times
         decay = np.exp(-share)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -68,12 +68,12 @@ class Memory:
         return np.asarray((self._held * decay).sum(axis=2))
 
     def add(self, decay: Array, weight: Array, change: Array) -> None:
-        """Store a step with changes (2, n) of pressure and force."""
+        """Add a step with changes (2, n) of pressure and force to the past; ``decay`` and ``weight`` from `step`."""
         self._held = self._held * decay + weight * change[..., None]
 
 
 def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel: Array) -> ViscousPath:
-    """Follow n domes along plate travels (n, m), in R0, at times (n, m) s; both begin with 0 at first contact.
+    """Follow n domes along plate ``travel`` (n, m; R0) at the times ``clock`` (n, m; s), both 0 at first contact.
 
     excess, times: Prony terms over the relaxed modulus and their times in s, (n, terms); an excess of 0 means no term.
     """
@@ -105,14 +105,14 @@ HOLD_TIMES = np.concatenate([np.geomspace(1e-2, 1.0, 13)[:-1], np.geomspace(1.0,
 """Times after the ramp, s: up to the paper's 600 s (Supplement D), logarithmically spaced, with 1 s among them."""
 
 _RAMP_STEPS, _LOOP_STEPS = 30, 48
-"""Equal steps in a ramp and half a loop: losses within 0.1, hysteresis within 0.2 percentage points (tests)."""
+"""Numbers of equal steps in a ramp and in half a loop: losses within 0.1, hysteresis within 0.2 percentage points."""
 
 
 @dataclass(frozen=True)
 class RelaxationRun:
     """A sensor pressed at constant speed and held: force (N) and pressure rise (MPa) at times (s) after the ramp.
 
-    ``ended`` gives the reason if the run could not be followed further, with the results before it; else None.
+    ``ended`` is the reason if the run could not be followed further, and the arrays then end before; else None.
     """
 
     times: Array
@@ -130,13 +130,13 @@ class RelaxationRun:
         return self._late.size > 1
 
     def percent(self, values: Array) -> Array:
-        """Values of a run that `holds`, in percent of the value at 1 s."""
+        """Values at all times of a run that `holds`, in percent of the value at 1 s."""
         shares: Array = 100 * values / values[self._late[0]]
         return shares
 
     def drop(self, values: Array) -> tuple[float, float]:
-        """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), both relative
-        to the value at 1 s.
+        """Loss of ``values`` from 1 s to the end, and per decade of time (least squares over log10 t from 1 s), both
+        relative to the value at 1 s.
 
         Raises ValueError if the run does not continue beyond 1 s.
         """
@@ -183,7 +183,7 @@ def relaxation(
     steps: int = _RAMP_STEPS,
     atlas: Atlas | None = None,
 ) -> list[list[RelaxationRun]]:
-    """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, > 0); lists by pressure, series.
+    """Press to ``depth`` (mm) at ``speed`` (mm/s), hold for ``times`` (s, > 0, ascending); lists by pressure, series.
 
     The sensor's modulus must be the relaxed one, and the sensor inside the atlas (`atlas.coverage.outside_atlas`).
     """
@@ -218,7 +218,7 @@ def loop(
     steps: int = _LOOP_STEPS,
     atlas: Atlas | None = None,
 ) -> list[list[LoopRun]]:
-    """Press to ``depth`` mm and retract at ``speed`` mm/s; one list per driving pressure (MPa), one run per series."""
+    """Press to ``depth`` (mm) and retract at ``speed`` (mm/s); lists by driving pressure (MPa), then series."""
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = np.concatenate([share, share[-2::-1]]) * depth
     clock = np.linspace(0.0, 2.0 * depth / speed, 2 * steps + 1)
@@ -229,7 +229,7 @@ def loop(
 
 
 def loop_run(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
-    """One run of 2 n + 1 points, of which the first ``known`` are valid; cut where the plate would pull the dome."""
+    """Loop from 2 n + 1 points, of which the first ``known`` are valid, cut where the plate would pull the dome."""
     turn, last = travel.size // 2, travel.size - 1
     where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
     there = slice(0, min(known, turn + 1))
@@ -260,7 +260,7 @@ def _followed(
     travel: Array,
     atlas: Atlas | None,
 ) -> tuple[AtlasPress, ViscousPath]:
-    """Press and path of every state in every series, with the series index fastest."""
+    """Press and paths of all driving pressures in all series; along the first axis the series change fastest."""
     batch = batch_of(sensor, np.repeat(np.asarray(driving_pressures, dtype=float), len(series)))
     terms = max(len(one.shares) for one in series)
     excess, times = np.zeros((len(series), terms)), np.ones((len(series), terms))
@@ -281,13 +281,13 @@ def _followed(
 
 
 def _with_units(press: AtlasPress, path: ViscousPath) -> tuple[Array, Array]:
-    """Force (N) and pressure rise (MPa), (n, m)."""
+    """Force (N) and pressure rise (MPa) of paths, (n, m) each."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     return path.force * mu * radius**2, (path.pressure - path.pressure[:, :1]) * mu
 
 
 def _sound(press: AtlasPress, path: ViscousPath, i: int) -> tuple[int, str | None]:
-    """Number of states of a run that are known and within the gauge's range, and the reason if there are no more."""
+    """Number of sound states at the start of path i (known, in the gauge's range), and why no more; None if all are."""
     clipped = path.pressure[i] > press.batch.gauge_limit[i] / press.batch.shear_modulus[i]
     sound = path.known[i] & ~clipped
     if sound.all():
