@@ -1,10 +1,10 @@
-"""The uncertainty of a sensor under another contact than the frictionless plate of the atlas.
+"""The uncertainty of a sensor under a contact other than the frictionless plate of the atlas.
 
-The atlas gives the derivatives by wall, radius, gas and driving pressure. The solid gives the derivatives by the
-friction and by the modulus, by far the most uncertain input, under the contact itself (docs/background/contact.md).
+The atlas gives the derivatives by wall, radius, gas and driving pressure. The solid gives those by friction and by the
+modulus, by far the most uncertain input, under the contact itself (docs/background/contact.md).
 
-Its sources: unknown friction, the part of another contact that the derivatives for the plate do not include, and an
-unknown place of contact.
+Sources that the contact adds: unknown friction, the difference between the derivatives under the contact and those
+under the plate, and an unknown place of contact.
 """
 
 from dataclasses import dataclass
@@ -29,17 +29,17 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.source import CORRECTION, FIGURE, FRICTION, PLACE, UncertaintySource, counting
 
 SPREAD = 2.0
-"""Factor by which a stated coefficient may be off in either direction, uniform in its logarithm: an assumption. Dry
-rubber on plastic has a coefficient near 1; dust, speed and load change it by that much."""
+"""Greatest factor between a stated coefficient of friction and the true one, uniform in its logarithm: an assumption.
+Dry rubber on plastic has a coefficient near 1; dust, speed and load change it by that much."""
 
 LEAST_GRIP = 1.0
-"""Least coefficient of a surface that is stated to grip: an assumption, the value of dry rubber on plastic."""
+"""Least coefficient assumed for a surface that is stated to grip: that of dry rubber on plastic."""
 
 _KURTOSIS = 1.8
 """Kurtosis of a rectangular distribution."""
 
 _LEAST_STEP = 0.1
-"""Least half step in ln modulus: for smaller steps the noise of the range ends shows in a difference."""
+"""Least half step in ln modulus: smaller differences of figures are disturbed by noise in the range's end."""
 
 _RANGE = CONTACT_FIGURES[-1]
 _SAME_END = 1e-6
@@ -64,10 +64,10 @@ class FrictionSpread:
 
 @dataclass(frozen=True)
 class ContactShift:
-    """Logarithms of the figures under the contact, by the solid, minus those under the plate, by the atlas.
+    """Logarithms of the figures under a contact, by the solid, minus those under the plate, by the atlas.
 
     Attributes:
-        half: Distance of the nodes in ln modulus.
+        half: Distance between the nodes in ln modulus.
         nodes: Values at the sensor's modulus times exp(-half), 1 and exp(half), (3, figures, n).
     """
 
@@ -75,29 +75,29 @@ class ContactShift:
     nodes: Array
 
     def at(self, by: Array) -> Array:
-        """Shift (figures, k, n) at ln of the modulus over that of the sensor (k, n): a parabola, constant beyond the
-        nodes."""
+        """Shift (figures, k, n) at ``by`` (k, n), the logarithm of a modulus over that of the sensor: a parabola,
+        constant beyond the nodes."""
         t = np.clip(by / self.half, -1.0, 1.0)
         less, here, more = self.nodes[:, :, None]
         return np.asarray(here + 0.5 * t * (more - less) + 0.5 * t**2 * (more - 2.0 * here + less))
 
     def row(self, row: int) -> "ContactShift":
-        """Shift of one sensor."""
+        """Shift of the one sensor with the index ``row``."""
         return ContactShift(self.half, self.nodes[:, :, row : row + 1])
 
 
 @dataclass(frozen=True)
 class ContactModel(CorrectedAtlas):
-    """One sensor under its contact, and the changes by another modulus or friction.
+    """Figures of one sensor under its contact, and their changes with another modulus or friction.
 
-    The changes are solved at the lowest and the highest pressure and linear in between, unless an event ends the range.
-    ``fitted_spread`` is the standard uncertainty of a coefficient that a calibration fitted.
+    The changes are solved at the lowest and the highest pressure and linear in between; at more if an event ends a
+    range. ``fitted_spread`` is the standard uncertainty of a fitted coefficient of friction; None: not fitted.
     """
 
     fitted_spread: float | None = None
 
     def shift(self, half: float) -> ContactShift:
-        """Shift over a spread of the modulus; on a side that the solid cannot solve it has the middle value."""
+        """Shift with nodes at least ``half`` apart in ln modulus; one that cannot be solved has the middle's value."""
         half = max(half, _LEAST_STEP)
         here = self.logs - self.plate(self.pressures)
         modulus = self.sensor.wall.shear_modulus
@@ -109,7 +109,7 @@ class ContactModel(CorrectedAtlas):
 
     @cached_property
     def friction(self) -> FrictionSpread | None:
-        """Effect of the uncertain coefficient; None without friction."""
+        """Effect of the uncertain coefficient of friction; None without friction."""
         stated = self.sensor.protocol.friction
         if self.fitted_spread is not None:
             return self._fitted(min(stated, GRIPS), self.fitted_spread)
@@ -136,7 +136,7 @@ class ContactModel(CorrectedAtlas):
         return FrictionSpread(np.sqrt(variance), slope / far, origin)
 
     def _fitted(self, value: float, spread: float) -> FrictionSpread:
-        """Effect of a fitted coefficient: change per standard uncertainty, between 0 and grip."""
+        """Effect of a fitted coefficient, from the change over one standard uncertainty ``spread`` to each side."""
         ends = max(value - spread, 0.0), min(value + spread, GRIPS)
         down, up = (self._change(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
         slope = (up - down) / max(ends[1] - ends[0], 1e-9)
@@ -144,8 +144,8 @@ class ContactModel(CorrectedAtlas):
         return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
 
     def _change(self, sensor: Sensor) -> Array:
-        """Change of the logarithms of the figures under the contact if the sensor is replaced by ``sensor``, minus the
-        change under the plate, (figures, n); NaN above the highest driving pressure that the solid can solve."""
+        """Change (figures, n) of the figures' logarithms under the contact from this sensor to ``sensor``, less that
+        under the plate; NaN above the highest driving pressure that the solid can solve."""
         at, solved = self.solved
         for count in range(at.size, 0, -1):
             rows = np.unique([0, count - 1])
@@ -162,18 +162,18 @@ class ContactModel(CorrectedAtlas):
         return between(np.array(self.pressures), at[rows], changes)
 
     def _to_the_depth(self, solved: Array, changes: Array) -> bool:
-        """True if no event ends the range: the travel at an event would change from pressure to pressure."""
+        """True if no range of the ``solved`` figures and of their ``changes`` ends before the test's depth."""
         ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
         return bool((ends < _SAME_END).all())
 
 
 WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
-"""Greatest differences found in d ln figure / d ln wall between the frictionless plate and a plate with friction, and
-between the frictionless plate and other objects (docs/background/contact.md)."""
+"""Greatest difference found in d ln figure / d ln wall between the frictionless plate and a plate with friction, and
+that between the frictionless plate and other objects (docs/background/contact.md)."""
 
 
 def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
-    """Sources for the contact of n sensors; those of ``others`` on the wall act by the derivative for the plate."""
+    """Sources for the contact at n pressures: friction, and use of the plate's derivative by the wall of ``others``."""
     size, source_list = len(contact.pressures), []
     friction = contact.friction
     if friction is not None:
@@ -218,7 +218,7 @@ _ORIGIN = (
 
 
 def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
-    """Source for n sensors; it counts for those that the table of contact anywhere covers."""
+    """Source for an unknown object and place of contact; it counts for those of n sensors that `anywhere` covers."""
     standard = place_uncertainties(batch, respond(batch))
     known = np.isfinite(standard)
     counts = counting(standard.size, only=(SENSITIVITY,)) & known
@@ -226,6 +226,6 @@ def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
 
 
 def place_uncertainties(batch: SensorBatch, response: AtlasResponse) -> Array:
-    """Relative standard uncertainties (n,) of sensors with their atlas responses; NaN outside the table."""
+    """Relative standard uncertainties (n,) by an unknown place, from atlas responses; NaN outside the table."""
     domes = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
     return place_uncertainty(domes, response.range_end / batch.inner_radius)

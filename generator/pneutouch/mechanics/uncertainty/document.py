@@ -1,6 +1,6 @@
-"""Monte Carlo propagation of a budget through the atlas (JCGM 101), the document of one sensor, and datasheet texts.
+"""Uncertainty budgets: Monte Carlo check by the atlas (JCGM 101), the record of one sensor, and texts for datasheets.
 
-Also the effects of the air on a sealed sensor, by temperature and by the speed of the press, at the sensor's states.
+Also effects of the air on a sealed sensor at its driving pressures: of temperature, and of a fast press.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def budget(batch: SensorBatch, material: Material, printer: Printer, **facts: Any) -> Budget:
-    """Uncertainty budget of the figures of n sensors of one resin and printer; ``facts`` are arguments of `sources`."""
+    """Uncertainty budget of the figures of n sensors of one resin and printer; ``facts``: keywords of `sources`."""
     return propagate(batch, sources(batch, material, printer, **facts), facts.get("contact"))
 
 
@@ -39,12 +39,12 @@ _COVERED = 0.9545
 """Share of a normal distribution within two standard deviations of the mean."""
 
 _GRAIN = 5e-4
-"""Relative rounding of wall ratios: the atlas is cut once per ratio; no wall is known to a hundred times this."""
+"""Relative rounding of wall ratios, because the atlas interpolates once per ratio; no wall is known so exactly."""
 
 
 @dataclass(frozen=True)
 class SampledFigures:
-    """Figures of one sensor over the samples.
+    """Distribution of the figures of one sensor over samples of its inputs.
 
     Attributes:
         standard: Standard deviation of ln figure, (figures,).
@@ -69,9 +69,9 @@ def monte_carlo(
     seed: int = 1,
     shift: ContactShift | None = None,
 ) -> SampledFigures:
-    """Sample the sources of sensor ``row``; the same seed gives the same samples. ``shift`` is that of the budget.
+    """Figures of sensor ``row`` over ``count`` samples of the sources; the same seed gives the same samples.
 
-    Figures for which the same sources count use the same samples.
+    ``shift`` is that of the budget, None under a plate. Figures for which the same sources count use the same samples.
     """
     logs = np.empty((len(FIGURES), count))
     groups: dict[tuple[bool, ...], list[int]] = {}
@@ -97,7 +97,7 @@ def _through_model(
     figure: int,
     shift: ContactShift | None,
 ) -> Array:
-    """Logarithms of all figures, (figures, count), under those sources on inputs that count for one figure.
+    """Logarithms (figures, count) of all figures over samples of those sources on inputs that count for ``figure``.
 
     ``drawn`` holds the row of the sensor, the number of samples, and the seed.
     """
@@ -129,7 +129,7 @@ def _summary(logs: Array) -> SampledFigures:
 
 
 _TRAVEL = 0.98
-"""Share of the range used for the comparison: its end may be the last stable state, lost by a rounding error."""
+"""Share of the range used by `gas_notes`: its end may be the last stable state, which rounding can lose."""
 
 _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 
@@ -137,8 +137,8 @@ _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 class GasNotes(NamedTuple):
     """Effects of the air on n sensors, (n,) each; NaN if the atlas has no state.
 
-    by_temperature_kPa_per_K: Pressure change of the sealed, untouched sensor, kPa/K. force_by_temperature: The contact
-    force with the same reading, N/K. wall_give: Pressure change over that in a rigid cavity: k_wall / (k_wall + k_gas).
+    by_temperature_kPa_per_K: Pressure change of the sealed, untouched sensor, kPa/K. force_by_temperature: Force that
+    gives the same reading, N/K. wall_give: Pressure change over that in a rigid cavity, k_wall / (k_wall + k_gas).
     fast_over_slow: Sensitivity with adiabatic gas over that with isothermal gas, over the same travel.
     """
 
@@ -149,10 +149,10 @@ class GasNotes(NamedTuple):
 
 
 def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) -> GasNotes:
-    """Effects of the temperature, at ``temperature`` (K), and of the gas law on n sensors.
+    """Effects of a change of temperature at ``temperature`` (K), and of a fast press, on n sensors.
 
     Ideal gas: dp = (p + p_a) dT/T - k_gas dV with k_gas = (p + p_a)/(V + V_d), and for the wall dp = k_wall dV, so
-    dp/dT = (p + p_a)/T * k_wall / (k_wall + k_gas). All the gas, including the dead volume, has one temperature.
+    dp/dT = (p + p_a)/T * k_wall / (k_wall + k_gas). All the gas, with the dead volume V_d, has one temperature.
     """
     atlas = neighbourhood()
     response = respond(batch, atlas=atlas)
@@ -170,7 +170,7 @@ def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) ->
 
 
 def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
-    """Slope dp/dV of the wall in free inflation, in mu/R0^3."""
+    """Slope dp/dV (n,) of the wall in free inflation, in mu/R0^3; ``k``: slices of the sensors."""
     slices, nu = press.slices, press.free
     apex = slices.free_apex(k, nu)
     point = slices.point(k, nu, apex[:, 0])
@@ -179,7 +179,7 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
 
 
 def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Array:
-    """Slope of pressure over force, kPa/N, over plate travels (n, m) in mm; NaN if a travel has no state."""
+    """Sensitivities (n,), kPa/N, over plate travels (n, m; mm), p V^``exponent`` constant; NaN without all states."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
@@ -188,7 +188,7 @@ def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Arra
 
 
 def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:
-    """Pressure and force (n, m) at plate travels in R0 for constant p V^exponent, and flags (n,): all states found."""
+    """Pressure and force (n, m) at plate travels in R0 for constant p V^exponent, and True (n,) if all are found."""
     nu, good = press.free, np.ones(press.free.size, dtype=bool)
     start = press.volume(press.free) + press.dead
     columns = []
@@ -210,7 +210,7 @@ def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Ar
 
 
 _FEW = 10.0
-"""Degrees of freedom below which k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
+"""Number of degrees of freedom below which k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
 
 _LEAST_SHARE = 5e-4
 
@@ -228,7 +228,7 @@ def document(
     *,
     calibrated: bool = False,
 ) -> UncertaintyRecord:
-    """Document with figures, sources and notes of sensor ``row``.
+    """Record with figures, sources and notes of sensor ``row``.
 
     Args:
         budget: Result of `budget`.
@@ -239,7 +239,7 @@ def document(
         calibrated: True adds ``at_calibration`` to each figure: its interval without the ageing since then.
 
     Returns:
-        The document; it omits a figure that the atlas does not have, and if there is none the notes state this.
+        The record, without figures that the atlas cannot give; without a sensitivity, the notes say why.
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
@@ -257,7 +257,7 @@ def document(
 
 
 def _fresh_width(budget: Budget, figure: int, row: int) -> float:
-    """Expanded uncertainty of the logarithm of a figure without future ageing."""
+    """Expanded uncertainty of the logarithm of a figure, without the sources of ageing."""
     kept = [source.name not in AGEING for source in budget.sources]
     return COVERAGE * float(np.sqrt(budget.variances[kept, figure, row].sum()))
 
@@ -284,7 +284,7 @@ def _interval(value: float, width: float) -> IntervalRecord:
 
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
-    """Shares of a figure's variance by source, greatest first; sources of one name are added, tiny ones left out."""
+    """Shares of a figure's variance by source, greatest first, sum 1; equal names are added, tiny shares left out."""
     by_name: dict[str, float] = {}
     for source, share in zip(budget.sources, budget.shares[:, FIGURES.index(figure), row], strict=True):
         by_name[source.name] = by_name.get(source.name, 0.0) + float(share)
@@ -321,7 +321,7 @@ def _notes(budget: Budget, row: int) -> list[str]:
 
 
 def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
-    """One or two sentences for a datasheet: the expanded uncertainty of the sensitivity, and what to measure first."""
+    """Text for a datasheet: expanded uncertainty of the sensitivity, and the quantities to measure first."""
     width = float(budget.expanded[SENSITIVITY, row])
     if not np.isfinite(width):
         return "The uncertainty of the sensitivity is not known: the sensor is outside the atlas."
@@ -343,7 +343,7 @@ def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
 
 
 def gas_text(batch: SensorBatch) -> list[tuple[str, ...]]:
-    """Notes on the air of n sensors, one tuple each; empty if the atlas has no state."""
+    """Notes on the effects of the air on n sensors, one tuple each; an empty one if the atlas has no state."""
     notes = gas_notes(batch)
     return [
         (

@@ -1,9 +1,8 @@
 """Propagation of sources by derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1).
 
-Also the sensitivity of the figures of many sensors to their inputs, as local derivatives and over the inputs' whole
-spread.
+Also the derivatives of the figures of many sensors by their inputs, local and over the inputs' whole spread.
 
-Also the uncertainty of only the limit pressure, without a press, so that thousands of candidates cost little.
+Also the uncertainty of the limit pressure alone, without a press, so that thousands of candidates cost little.
 """
 
 from __future__ import annotations
@@ -29,27 +28,27 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 
 STEP = 0.015
-"""Half of the central difference, relative. For smaller steps the noise of tabulated range ends grows (the edge of
-buckling is piecewise linear), for larger ones curvature, mostly where a wall lies down on its base. Half and twice the
-step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %, mostly by
-less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
+"""Relative step to each side in a central difference. For smaller steps the noise of tabulated range ends grows (the
+edge of buckling is piecewise linear), for larger ones curvature, mostly where a wall lies down on its base. Half and
+twice the step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %,
+mostly by less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
 
 _BENT_SHARE = 0.05
-"""Relative difference above which the effect of the whole spread replaces the derivative."""
+"""Relative difference above which the effect over an input's whole spread replaces its local derivative."""
 
 _WIDE = 0.5
-"""Share of an input's spread that must count for a figure for the derivative to be replaced."""
+"""Least share of an input's spread that must count for a figure, for its derivative to be replaced."""
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Figures of n sensors and their derivatives.
+    """Figures of n sensors and their derivatives by the inputs.
 
     Attributes:
         logs: ln of the figures, (figures, n).
         elasticities: d ln figure / d ln input, (inputs, figures, n); 0 for the dead volume if there is none.
-        local: Derivatives of ln figure by the input in its unit of uncertainty (relative; dead volume mm3), same shape.
-        slopes: As ``local``, but for a bent response the root mean square change per standard uncertainty.
+        local: Derivatives of ln figure by the change of an input as in `moved`, (inputs, figures, n).
+        slopes: As ``local``, but for a bent response the root mean square change per standard uncertainty, with sign.
         one_sided: True where a sensor could not be evaluated on one side: beyond its limit point or the atlas, (inputs,
             n).
     """
@@ -61,7 +60,7 @@ class Derivatives:
     one_sided: Flags
 
     def part(self, rows: slice) -> Derivatives:
-        """Derivatives of the selected sensors."""
+        """Derivatives for the sensors of a slice."""
         return Derivatives(*(getattr(self, each.name)[..., rows] for each in fields(self)))
 
 
@@ -104,13 +103,14 @@ def derivatives(
 
 
 def _slope(up: Array, down: Array) -> Array:
-    """Half the difference of both sides; the one-sided difference at an edge, 0 with neither side."""
+    """Half the difference of the changes on both sides; one side's if the other is NaN, 0 if both are."""
     both = np.where(np.isnan(down), up, np.where(np.isnan(up), -down, 0.5 * (up - down)))
     return np.where(np.isnan(both), 0.0, both)
 
 
 def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, Flags]:
-    """Standard deviation of ln figure over an input's spread, and flags: known.
+    """Standard deviation of ln figure over an input's spread, from its changes at both ends, and True if both are
+    known.
 
     Three-point rule at sqrt(kurtosis) standard uncertainties with weights 1/(2 kurtosis), which reproduces the first
     five moments of the deviation: Gauss-Hermite for a normal, Gauss-Legendre for a rectangular distribution.
@@ -130,7 +130,7 @@ _NORMAL = 3.0
 _BENT = 0.05
 
 _NOTHING = 1e-6
-"""Relative standard uncertainty below which a figure is exact under the given sources, up to rounding."""
+"""Relative standard uncertainty below which a figure counts as exact: no source acts on it, but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ class Budget:
 
     Attributes:
         sources: The sources, in the order of the first axis of ``variances``.
-        derivatives: Figures, elasticities, nonlinearities.
+        derivatives: Figures and their derivatives by the inputs.
         variances: Variances of the logarithm of the figures, by source, (sources, figures, n).
         linear: Combined standard uncertainty by the local derivatives only, (figures, n).
         shift: Change of the figures from the plate to another contact; None under a frictionless plate.
@@ -163,25 +163,25 @@ class Budget:
 
     @property
     def standard(self) -> Array:
-        """Combined standard uncertainty of the logarithm, that is relative, (figures, n); NaN without a figure."""
+        """Combined standard uncertainty of the logarithms of the figures, (figures, n); NaN without a figure."""
         combined = np.sqrt(self.variances.sum(axis=0))
         return np.where(np.isfinite(self.derivatives.logs), combined, np.nan)
 
     @property
     def expanded(self) -> Array:
-        """Expanded uncertainty k u of the logarithm, (figures, n)."""
+        """Expanded uncertainty k u of the logarithms of the figures, (figures, n)."""
         return COVERAGE * self.standard
 
     @property
     def shares(self) -> Array:
-        """Shares of the variance by source, (sources, figures, n): they sum to 1, or are 0 for an exact figure."""
+        """Shares (sources, figures, n) of the variance by source: their sum is 1, or 0 for an exact figure."""
         total = self.variances.sum(axis=0)
         exact = total <= _NOTHING**2
         return np.asarray(np.where(exact, 0.0, self.variances / np.where(exact, 1.0, total)))
 
     @property
     def nonlinear(self) -> Flags:
-        """True for figures whose uncertainty differs from that of the local derivatives by more than 5 %, (figures, n).
+        """Mask (figures, n) of the figures whose uncertainty differs by more than 5 % from that by local derivatives.
 
         The response then bends within the spread of an input, mostly because another event ends the range; the figure's
         distribution is not normal, and k = 2 need not cover 95 %.
@@ -197,9 +197,9 @@ class Budget:
 
 
 def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: ContactModel | None = None) -> Budget:
-    """Combine the sources of n sensors through the atlas; the sources are taken as mutually independent.
+    """Budget of n sensors from their sources, by the atlas; the sources are taken as mutually independent.
 
-    Correlated inputs belong to one joint source.
+    Correlated inputs belong to one joint source. ``contact`` None: a frictionless plate.
     """
     standard, kurtosis = _by_input(batch, sources)
     shift = None
@@ -210,7 +210,7 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: Con
 
 
 def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]]]) -> list[Budget]:
-    """`propagate` for groups of sensors with their own sources: one pass through the atlas, since calls are costly."""
+    """`propagate` for groups of sensors with their own sources, in one call of the atlas, because calls are costly."""
     batches = [batch for batch, _ in groups]
     spreads = [_by_input(batch, sources) for batch, sources in groups]
     standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
@@ -234,7 +234,7 @@ def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: C
 
 
 def variances(sources: list[UncertaintySource], slopes: Array) -> Array:
-    """Variances of the logarithms of the figures, (sources, figures, n), from their slopes, (inputs, figures, n)."""
+    """Variances (sources, figures, n) of the logarithms of the figures, from their slopes (inputs, figures, n)."""
     return np.stack([source.variance(slopes) for source in sources])
 
 
@@ -256,10 +256,10 @@ def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Arr
 LIMIT = FIGURES.index("limit_pressure_kPa")
 
 COUPON = 0.03
-"""Relative standard deviation of a modulus measured on tensile coupons of the same print: our choice."""
+"""Relative standard deviation of a modulus measured on tensile coupons of the same print: a choice."""
 
 _RATIOS = 200
-"""Number of wall ratios in the table of slopes: 1 % apart, within half a step of the budget's derivatives."""
+"""Number of wall ratios in the table of slopes: 1 % apart, closer than the step of the budget's derivatives."""
 
 
 class LimitSpread(NamedTuple):
@@ -279,9 +279,9 @@ def limit_spread(
     numerical: float,
     calibration: SensorCalibration | None = None,
 ) -> LimitSpread:
-    """Uncertainty of the limit pressure as stated by `budget`, for n sensors of one resin and printer.
+    """Uncertainty of the limit pressure, as by `document.budget`, for n sensors of one resin and printer.
 
-    ``numerical`` is the greatest relative numerical error of the limit pressure.
+    ``numerical`` is the greatest relative numerical error of the limit pressure; ``calibration``: None without one.
     """
     modulus = material.shear_modulus_MPa
     assert modulus is not None
@@ -300,7 +300,7 @@ def limit_spread(
 
 
 def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array:
-    """Combined standard uncertainty as in `propagate`, with the known slopes of ln limit pressure.
+    """Combined standard uncertainty (n,) of ln limit pressure as in `propagate`, with slopes that are known.
 
     The limit pressure is the modulus times a function of the wall ratio only.
     """
@@ -313,14 +313,14 @@ def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array
 
 
 def wall_slope(wall_ratio: Array) -> Array:
-    """Slope d ln limit pressure / d ln wall ratio, (n,); beyond the atlas the slope at its edge."""
+    """Slopes d ln limit pressure / d ln wall ratio, (n,); outside the atlas that at its edge."""
     at, slope = _slopes()
     return np.asarray(np.interp(np.log(wall_ratio), at, slope))
 
 
 @cache
 def _slopes() -> tuple[Array, Array]:
-    """Logarithms of wall ratios, and the slopes of ln limit pressure at them."""
+    """Logarithms of `_RATIOS` wall ratios, and the slopes of ln limit pressure over them."""
     walls = neighbourhood().recipe.wall_ratios
     at = np.linspace(np.log(walls[0]), np.log(walls[-1]), _RATIOS)
     # The exponential is rounded: this keeps the ends inside the table.

@@ -1,4 +1,4 @@
-"""One source of uncertainty: its effect, its spread, and the origin of its number."""
+"""Record of one source of uncertainty: the inputs or figures it acts on, its spread, and the origin of its number."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ class UncertaintySource:
     """A named source of uncertainty for n sensors.
 
     Attributes:
-        name: Short name, the key of its share.
+        name: Short name, under which its share of the variance is given.
         acts_on: One of `INPUTS`, `FIGURE`, or `JOINT`.
         standard: Standard uncertainty (n,), relative; for the dead volume absolute, mm3, because that may be zero.
-        distribution: Of the relative deviation (normal, rectangular) or of its logarithm (lognormal, log-rectangular).
+        distribution: Of the relative deviation (normal, rectangular), or of the factor's logarithm (the other two).
         counts: Figures and sensors for which the source counts, (figures, n).
-        origin: Origin of the number.
+        origin: Origin of the number, in words.
         known: True if it is a published or measured number; False for an assumption.
         freedom: Degrees of freedom of ``standard``; infinite for a bound or an assumption (JCGM 100, G.4.3).
-        loads: For a joint source, by input, a row of the root of the covariance: changes, in the input's unit, by
-            independent deviations of unit variance; rows of one length. The values of ``standard`` are not read then.
+        loads: For a joint source, by input: changes of that input as in `moved` by independent deviations of unit
+            variance, a row of the covariance's root; rows of one length. ``standard`` then gives only the number n.
     """
 
     name: str
@@ -53,13 +53,13 @@ class UncertaintySource:
 
     @property
     def moves(self) -> dict[str, Array]:
-        """Standard uncertainties (n,) by the inputs that the source acts on; empty for one on the figure."""
+        """Standard uncertainties (n,) by the name of the input; empty for a source that acts on the figure."""
         if self.acts_on == JOINT:
             return {name: np.full(self.standard.shape, np.linalg.norm(row)) for name, row in self.loads.items()}
         return {} if self.acts_on == FIGURE else {self.acts_on: self.standard}
 
     def variance(self, slopes: Array) -> Array:
-        """Variance of the logarithm of the figures, (figures, n), from their slopes (inputs, figures, n)."""
+        """Variances (figures, n) of the figures' logarithms by this source, from the slopes (inputs, figures, n)."""
         if self.acts_on == FIGURE:
             whole = np.broadcast_to(self.standard**2, self.counts.shape)
         elif self.acts_on == JOINT:
@@ -70,7 +70,7 @@ class UncertaintySource:
         return np.where(self.counts, whole, 0.0)
 
     def deviations(self, row: int, count: int, draw: np.random.Generator) -> dict[str, Array]:
-        """Sampled changes of the inputs, (count,), in the form for `moved`: logarithmic, or mm3 for the dead volume."""
+        """Sampled changes (count,) by input, in the form for `moved`: logarithmic, or mm3 for the dead volume."""
         if self.acts_on == JOINT:
             rows = np.array([*self.loads.values()])
             return dict(zip(self.loads, rows @ draw.standard_normal((rows.shape[1], count)), strict=True))
@@ -83,7 +83,7 @@ class UncertaintySource:
         return 1.8 if self.distribution.endswith("rectangular") else 3.0
 
     def sample(self, row: int, count: int, draw: np.random.Generator) -> Array:
-        """Sampled deviations of sensor ``row``, (count,): factors, or mm3 to be added to the dead volume."""
+        """Sampled factors (count,) for sensor ``row``; for the dead volume mm3 to add. Not for a joint source."""
         flat = self.distribution.endswith("rectangular")
         unit = draw.uniform(-np.sqrt(3.0), np.sqrt(3.0), count) if flat else draw.standard_normal(count)
         deviation = self.standard[row] * unit
@@ -112,7 +112,7 @@ class UncertaintySource:
 
 
 def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> Flags:
-    """Mask (figures, size) of the figures that count: all, ``only`` these, or all ``without`` these."""
+    """Mask (figures, size) of the figures that count: those of the indices ``only`` (none: all), less ``without``."""
     flags = np.full((len(FIGURES), size), not only)
     flags[list(only)] = True
     flags[list(without)] = False

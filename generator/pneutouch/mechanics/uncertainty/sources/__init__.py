@@ -48,9 +48,9 @@ def sources(
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
         aged: Greatest age of the sensor, or the greatest time since it was calibrated, in years; a year counts at most.
-        calibration: Calibration of the sensor in hand; its parameters and its model error replace those of design and
-            resin.
-        contact: Contact at the n driving pressures, if it is not a frictionless plate.
+        calibration: Calibration of the built sensor, whose parameters and model error replace those of design and
+            resin; None without one.
+        contact: Contact at the n driving pressures; None: a frictionless plate.
         anywhere: True if object and place of contact are unknown; see `contact_model.place_sources`.
 
     Raises:

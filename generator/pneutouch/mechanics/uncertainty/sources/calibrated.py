@@ -1,5 +1,5 @@
-"""The uncertainty of a calibrated sensor: its fitted parameters as one source, and the remaining error of the corrected
-model."""
+"""Sources of uncertainty of a calibrated sensor: its fitted parameters as one source, and the remaining error of the
+corrected model."""
 
 import math
 from dataclasses import replace
@@ -32,25 +32,26 @@ _INPUT_OF = {
     "wall_thickness_mm": ("wall_thickness", 1.0),
     "dead_volume_mL": ("dead_volume", ML),
 }
-"""Input, and factor from the parameter's unit, by parameter key; the contact offset belongs only to the rig."""
+"""Name of the input, and factor to its unit, by the key of a fitted parameter; the contact offset is none of a
+sensor."""
 
 _FORCES = (FIGURES.index("stiffness_N_per_mm"), FIGURES.index("force_at_range_end_N"))
 
 LEFT = math.sqrt(2.0 * (1.0 - MODEL_CORRELATION))
 """Standard deviation of the difference of two errors of the model over that of one error: the share of the model's
-error that remains far from the driving pressure of a correction, as far as Table S1 shows at 0 and 22 kPa."""
+error that remains far from the driving pressures of a correction, from the paper's Table S1 at 0 and 22 kPa."""
 
 _BEYOND = 1.05
-"""Factor by which a driving pressure may lie outside the measured ones and still count as measured: our choice."""
+"""Factor by which a driving pressure may lie outside the measured ones and still count as measured: a choice."""
 
 
 def replaced(calibration: SensorCalibration) -> frozenset[str]:
-    """Inputs whose uncertainty comes from the calibration: the sources of design and resin do not act on them."""
+    """Inputs whose uncertainty comes from the calibration, in place of the sources of design and resin on them."""
     return frozenset(_INPUT_OF[key][0] for key in calibration.covered if key in _INPUT_OF)
 
 
 def calibrated_sources(batch: SensorBatch, calibration: SensorCalibration) -> list[UncertaintySource]:
-    """Sources from a calibration, for n sensors: the calibrated sensor at n driving pressures."""
+    """Sources that a calibration states, for n rows: the calibrated sensor at n driving pressures."""
     parameters = [_parameters(batch, calibration)] if replaced(calibration) else []
     response = calibration.response
     return parameters + ([] if response is None else _response(batch, calibration, response))
@@ -61,8 +62,8 @@ def kept_of_design(
 ) -> list[UncertaintySource]:
     """Sources of design and resin that remain after calibration, for the calibrated sensor at n driving pressures.
 
-    The inner radius is never fitted, but it is the specimen's own radius in the runs too, and so is the friction of the
-    object: if curves were measured, the correction includes their effect on sensitivity and force.
+    Inner radius and friction are not replaced, but those of the specimen acted in the measured runs too: if curves were
+    measured, the correction includes their effect on sensitivity and force within the curves' driving pressures.
     """
     known = replaced(calibration)
     kept = [source for source in design if source.acts_on not in known]
@@ -77,9 +78,8 @@ def kept_of_design(
 def kept_of_model(
     batch: SensorBatch, calibration: SensorCalibration, model: list[UncertaintySource]
 ) -> list[UncertaintySource]:
-    """Sources of the model's error that remain after calibration, for n sensors at n driving pressures: unchanged
-    without curves; with curves, `LEFT` of the error beyond the driving pressures of the curves, and none within
-    them."""
+    """Sources of the model's error that remain after calibration, for the sensor at n driving pressures: unchanged
+    without measured curves; with curves, `LEFT` of the error beyond their driving pressures, and none within them."""
     if calibration.response is None:
         return model
     beyond = _outside(batch, calibration)
@@ -114,7 +114,7 @@ def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> Uncertain
 
 
 def _outside(batch: SensorBatch, calibration: SensorCalibration) -> Flags:
-    """Mask (n,) of the sensors at driving pressures beyond those of the calibration's curves."""
+    """Mask (n,) of the driving pressures that lie beyond those of the calibration's curves."""
     pressures_kPa, at_kPa = calibration.source.driving_pressures_kPa, batch.driving_pressure / KPA
     return np.asarray((at_kPa < min(pressures_kPa) / _BEYOND) | (at_kPa > max(pressures_kPa) * _BEYOND))
 

@@ -1,6 +1,6 @@
-"""The uncertainty of the model itself: its errors against the paper's Table S1, and its numerical errors.
+"""Sources of uncertainty of the model: its errors against the paper's Table S1, and its numerical errors.
 
-Also the uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
+Also those of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 UNEXPLAINED = 1.5
-"""Factor beyond which all errors of a resin must lie for it to be left out of the pool and named: a choice of this
-program. It leaves out FLX9995-DM, which reads twice too sensitive for an unknown reason."""
+"""Factor between model and measurement that all values of a resin must exceed for it to be left out of the pool and
+named: a choice. It leaves out FLX9995-DM, which is predicted twice too sensitive for an unknown reason."""
 
 MODEL_CORRELATION = 0.756
 """Correlation between the model's errors of two sensors in one resin, where an error is the logarithm of model over
@@ -38,7 +38,7 @@ MODEL = "model"
 
 @dataclass(frozen=True)
 class ModelErrors:
-    """Relative errors of the sensitivity against Table S1: of one resin, and of all pooled; ``left_out``: titles."""
+    """Relative errors of the sensitivity against Table S1: of one resin, and of a pool; titles ``left_out`` of it."""
 
     resin_errors: tuple[float, ...] = ()
     pool: tuple[float, ...] = ()
@@ -53,7 +53,7 @@ def model_errors(material: Material, materials: Iterable[Material]) -> ModelErro
 
 
 def measured_errors(materials: Mapping[str, Material]) -> dict[str, ModelErrors]:
-    """`model_errors` of every resin with measurements, by name."""
+    """`model_errors`, pooled over ``materials``, of each of them that has measurements, by name."""
     every = list(materials.values())
     errors = table_s1_errors(every)
     return {
@@ -70,7 +70,7 @@ def _pooled(resin_errors: tuple[float, ...], others: list[Material], rest: list[
 
 
 def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
-    """Relative errors of the atlas at 0 and 22 kPa by material; empty for a material without measurements."""
+    """Relative errors of the atlas's sensitivity at 0 and 22 kPa for each material; () without measurements."""
     sensors = tuple(material_sensor(m) for m in materials if m.measured is not None)
     computed = iter(_table_s1_sensitivities(sensors))
     return [() if m.measured is None else _against(m.measured, next(computed)) for m in materials]
@@ -78,7 +78,7 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
 
 @lru_cache
 def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
-    """Sensitivities by the atlas at 0 and 22 kPa, kPa/N, (n, 2); cached, because they do not depend on the design."""
+    """Sensitivities (n, 2), kPa/N, by the atlas at 0 and 22 kPa; cached, because no design changes them."""
     if not sensors:
         return np.empty((0, 2))
     batch = SensorBatch.join([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
@@ -96,14 +96,14 @@ def _unexplained(errors: tuple[float, ...]) -> bool:
 
 
 def _spread(errors: tuple[float, ...]) -> float:
-    """Root mean square of the logarithms of model over measurement: scatter and bias together, without correction."""
+    """Root mean square of the logarithms of model over measurement, from relative errors: scatter and bias together."""
     return float(np.sqrt(np.mean(np.log1p(errors) ** 2)))
 
 
 def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
-    """Sources for the model's error in sensitivity: the resin's own ``near`` (n,) the paper's sensor, else the pool's.
+    """Sources for the model's error in sensitivity: the resin's own error where ``near`` (n,) is True, else the pool's.
 
-    A resin left out of the pool keeps its own error everywhere. For the other figures no such error is known.
+    A resin that is left out of the pool keeps its own error everywhere. For other figures no such error is known.
     """
     resin_errors = (near | _unexplained(errors.resin_errors)) & bool(errors.resin_errors)
     left = f", without {', '.join(errors.left_out)}" if errors.left_out else ""
@@ -133,7 +133,7 @@ def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
 
 
 def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[UncertaintySource]:
-    """Sources for greatest numerical errors by figure, relative. Raises InputError for an unknown figure."""
+    """Sources for ``size`` sensors from greatest relative numerical errors by figure. InputError: unknown figure."""
     source_list = []
     for name, greatest in numerical.items():
         if name not in FIGURES:
@@ -154,7 +154,7 @@ def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Uncerta
 
 BORE, BORE_TOLERANCE = 2.5, 0.1
 """Bore of a 4 mm tube (SMC TU0425) and its tolerance, mm. Only outer diameters have a published tolerance, +-0.1 mm for
-nylon (SMC KQ2 precautions); the same for the bore is an assumption."""
+nylon (SMC KQ2 precautions); it is assumed to be that of the bore too."""
 
 UNSTATED_VOLUME = 100.0
 """Air in fitting and gauge that a stated dead volume may omit, mm3: an assumption, 20 mm of a 2.5 mm bore."""
@@ -164,10 +164,10 @@ WEATHER = 4.5 * KPA
 course M301, Atmospheric Pressure)."""
 
 GAUGE = 0.02
-"""Temperature characteristic of the SMC PSE543: +-2 % of its range (paper, Supplement C)."""
+"""Temperature characteristic of the SMC PSE543 gauge: +-2 % of its range (paper, Supplement C), as a share."""
 
 _LIMITS = 3.0
-"""Number of standard deviations to which limits that hold almost always are taken to extend (JCGM 100, 4.3.5)."""
+"""Number of standard deviations between the mean and a limit that holds almost always (JCGM 100, 4.3.5)."""
 
 _ROOT = np.sqrt(3.0)
 

@@ -1,4 +1,4 @@
-"""The uncertainty of the shear modulus: between prints, between laboratories, and by ageing of the resin."""
+"""Sources of uncertainty of the shear modulus: between prints, between laboratories, and by ageing of the resin."""
 
 from dataclasses import replace
 
@@ -13,18 +13,18 @@ from pneutouch.spec.material import HARDEST, Material
 from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7
-"""Ratio of high to low for a modulus without a known independent value: an assumption, from the four estimates of
-relaxed Agilus30, 0.10 to 0.27 MPa (see `Agilus30.toml`)."""
+"""Ratio of the greatest to the least modulus if no independent value is known: an assumption, from the four estimates
+of relaxed Agilus30, 0.10 to 0.27 MPa (see `Agilus30.toml`)."""
 
 ASSUMED_HARDNESS_SPREAD = 1.64
-"""Spread of Shore A for a resin without a known one: root mean square over the seven resins of the paper's Table 1."""
+"""Standard deviation of Shore A if none is known: root mean square over the seven resins of the paper's Table 1."""
 
 ASSUMED_HARDNESS_CHANGE = 2.88
-"""Change of Shore A in a year for a resin without a known one: root mean square over the paper's Table 1 (seven)."""
+"""Change of Shore A in a year if none is known: root mean square over the seven resins of the paper's Table 1."""
 
 ASSUMED_AGEING = 0.24
-"""Relative change of sensitivity in a year for a resin without a known one: root mean square of the paper's three
-values (14.8, 17.0 and 34.9 %, Supplement E)."""
+"""Relative change of sensitivity in a year if none is known: root mean square of the paper's three values (14.8, 17.0
+and 34.9 %, Supplement E)."""
 
 _READINGS = 20
 """Number of readings behind a hardness spread of the paper's Table 1 (Supplement A)."""
@@ -85,7 +85,7 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
 
 
 def _log_rectangular(factor: float) -> float:
-    """Standard deviation of the logarithm of a value that is log-uniform between two ends, ``factor`` apart.
+    """Standard deviation of the logarithm of a value that is log-uniform between two ends with the ratio ``factor``.
 
     For a rectangle the squared width is 12 times the variance; the width is kept although the value need not be the
     middle (JCGM 100, 4.3.8).
@@ -152,9 +152,9 @@ AGEING = ("ageing", "ageing of the modulus")
 
 
 def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> list[UncertaintySource]:
-    """Sources for a year in light and air: for the modulus by the hardness, for the sensitivity as measured.
+    """Sources for a year in light and air: for the modulus from the hardness, for the sensitivity as measured.
 
-    ``remaining`` is the share of the year that counts: what has passed is in the values, what is later does not matter.
+    ``remaining`` is the share of the year that counts: earlier ageing is in the values, later ageing does not matter.
 
     The age at use is taken as anything from fresh to a year. A deviation that is uniform from 0 to c has the mean
     square c^2/3 about the fresh value, like a rectangle of half-width c: the drift is not corrected, but included in
