@@ -84,7 +84,7 @@ class PneutouchError(Exception):
 
 
 class RuleBrokenError(PneutouchError):
-    """A printability rule or a mechanical limit is broken."""
+    """A broken printability rule or mechanical limit, or a target that is not met."""
 
     exit_code = 1
 

@@ -52,9 +52,9 @@ class SolidEvent:
     Kinds that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold (a jump
     at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid with a base
     continues). Kinds that do not: base (the outer wall lies down next to its clamp), separation (the wall leaves the
-    plate inside the contact: buckling inward), crease, overhang (the wall hangs below its base plane where the solid
-    has no base), plate_rim and object_edge (the contact reaches where the object turns up), break, gauge_range, sway
-    and lobes (the axisymmetric path is unstable to one wave around the axis, or to several).
+    plate inside the contact), crease, overhang (the wall hangs below its base plane where the solid has no base),
+    plate_rim and object_edge (the contact reaches where the object turns up), break (break strain), gauge_range, sway
+    and lobes (the axisymmetric path is unstable to one wave around the axis, or to several). ``detail``: in words.
     """
 
     kind: str

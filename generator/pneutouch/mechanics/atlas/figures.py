@@ -42,7 +42,7 @@ _MARGIN = 0.001
 
 SOFTEST = 6.0
 """Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is not one of their
-coordinates: it only decides which states a press passes, and in a stiff gas these are among the surveyed ones. Checked
+coordinates: it only decides which states a press passes, and in a stiff gas these are among the solved ones. Checked
 with the paper's dome without driving pressure and at 6 % of the limit pressure
 (`tests/mechanics/uncertainty/test_soft_walls.py`): at 1.8, 4.1 and 5.8 moduli the figures are within 0.2 % of the
 solid's, derivatives by modulus and wall within 5 % or 0.04; at 11 they are off by 2 % and up to 25 %."""

@@ -31,10 +31,10 @@ class PressedFace:
         travel: Distance that the object then moved sideways.
         harmonics: The Fourier sums of the positions.
         coefficients: Positions of the nodes, (n_nodes, columns), see `harmonic.fields.Harmonics`.
-        forces: Contact forces of the wall on the object, normal to it, (n_ends, M + 1, 3), at the contact angles of the
-            half circle; each also stands for its mirror image, with the opposite component in y.
-        areas: Areas of the deformed wall that belong to the forces, (n_ends, M + 1), with their mirror images.
-        touching: Part of these areas that touches the object, (n_ends, M + 1).
+        forces: Contact forces of the wall on the object, normal to it, (n_ends, n_angles, 3), at the contact angles of
+            `harmonics`; each also stands for its mirror images, with components of opposite sign.
+        areas: Areas of the deformed wall that belong to the forces, (n_ends, n_angles), with their mirror images.
+        touching: Part of these areas that touches the object, (n_ends, n_angles).
         lines: Lines that outline the object, (k, 3) each.
     """
 

@@ -33,19 +33,19 @@ REFERENCE_TEMPERATURE = 293.15
 """Reference temperature, K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
 
 _GAS_CONSTANT = 8.31432 / 0.0289644
-"""J/(kg K): R* and mean molar mass, U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), table 2 and section 1.3."""
+"""Gas constant of air, J/(kg K): U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), table 2 and section 1.3."""
 
 _SUTHERLAND = 1.458e-6, 110.4
-"""kg/(s m K^0.5) and K: the same source, equation 51."""
+"""Constants of the viscosity, kg/(s m K^0.5) and K: the same source, equation 51."""
 
 _CONDUCTIVITY = 2.64638e-3, 245.4, 12.0
-"""W/(m K^1.5), K and K: the same source, equation 53."""
+"""Constants of the thermal conductivity, W/(m K^1.5), K and K: the same source, equation 53."""
 
 _PASCAL = 1e-6
-"""MPa in one Pa, and MPa s in one Pa s."""
+"""One pascal in MPa, and one pascal second in MPa s."""
 
 _KG_PER_M3 = 1e-12
-"""t/mm3 in one kg/m3."""
+"""One kilogram per cubic metre in t/mm3."""
 
 _TEMPERATURES = (200.0, 400.0)
 """Temperature range in K in which the formulas of the source are used."""

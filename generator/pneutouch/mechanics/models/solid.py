@@ -379,7 +379,7 @@ def _walls(solid: SolidModel, free: FreeState, press: PressSettings, pressed: In
 
 
 def _section(press: PressSettings, start: Indenter | None, at: float | None, solid: SolidModel) -> Array | None:
-    """Section of the object at an indentation (mm), for drawing; None for a plate and before contact."""
+    """Section (k, 2; mm) of the object at an indentation (mm), for drawing; None for a plate, or if ``at`` is None."""
     if press.body is None or start is None or at is None:
         return None
     return press.body.at(start.height * solid.length - at).outline(_DRAWN * solid.length)

@@ -1,6 +1,6 @@
-"""Axisymmetric hyperelastic finite elements: a dome, its trapped gas and a flat rigid plate.
+"""Axisymmetric hyperelastic finite elements: a dome, its trapped gas, and a rigid plate or other object.
 
-Units throughout: mm, N, MPa (pressures too).  Entry points: `mesh.dome` and `flange.printed_dome` (meshes),
-`laws.hyperelastic` (materials), `model.SolidModel` (the discrete body), `inflate.inflate` (study 1), `indent.indent`
-(study 2).  Nothing is imported here: the solver loads SciPy, which the atlas must not pay for.
+Meshes, settings and results are in mm, N and MPa; the solver is nondimensional, in R0 and mu. Entry points:
+`mesh.dome`, `flange.printed_dome`, `model.SolidModel`, `inflate.inflate` and `indent.indent`. Nothing is imported here,
+because the atlas needs no solver and no SciPy.
 """

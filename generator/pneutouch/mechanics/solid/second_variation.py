@@ -115,8 +115,8 @@ def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
 def _gas(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
     """Second variation of the gas potential, minus pressure times volume, by edges of the inner wall.
 
-    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over the surface, h the horizontal position: to second order pi
-    integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) along the meridian.
+    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over meridian s and angle t, h the horizontal position, [,] the
+    determinant: to second order pi integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) ds.
     """
     edges, pressure = solid.mesh.inner, state.filling.pressure
     n = edges.shape[1]
