@@ -75,8 +75,7 @@ class ContactShift:
     nodes: Array
 
     def at(self, by: Array) -> Array:
-        """Shift (figures, k, n) at ``by`` (k, n), the logarithm of a modulus over that of the sensor: a parabola,
-        constant beyond the nodes."""
+        """Shift (figures, k, n) at ln of modulus ratios ``by`` (k, n): a parabola, constant beyond the nodes."""
         t = np.clip(by / self.half, -1.0, 1.0)
         less, here, more = self.nodes[:, :, None]
         return np.asarray(here + 0.5 * t * (more - less) + 0.5 * t**2 * (more - 2.0 * here + less))
@@ -173,7 +172,8 @@ that between the frictionless plate and other objects (docs/background/contact.m
 
 
 def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
-    """Sources for the contact at n pressures: friction, and use of the plate's derivative by the wall of ``others``."""
+    """Sources for the contact at n driving pressures: friction, and the error of the derivative by the wall, which is
+    that under the plate; the spread of the wall is that of the sources ``others``."""
     size, source_list = len(contact.pressures), []
     friction = contact.friction
     if friction is not None:
