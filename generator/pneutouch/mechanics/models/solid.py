@@ -366,7 +366,7 @@ def _shapes(
 
 def _walls(solid: SolidModel, free: FreeState, press: PressSettings, pressed: IndentationPath) -> WallPath:
     """Both faces of the wall at every solved state."""
-    at = pressed.column("indentation")
+    at = np.array([state.indentation for state in pressed.path])
     positions = np.stack([state.positions for state in pressed.path])
     body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
     sections = (_section(press, body, depth, solid) for depth in at.tolist())
