@@ -1,11 +1,14 @@
 """The model ``atlas``: results of the solid, interpolated for a sensor."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Index
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.coverage import meets_ring, outside_atlas
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
@@ -28,10 +31,9 @@ from pneutouch.mechanics.events import CREASE, DETAIL, Event, PathPoint, crossin
 from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, NUMERICAL, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
 from pneutouch.mechanics.prediction import InflationCurve, LimitPoint, Limits, ModelResult, SensorState
-from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.response import Figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.prediction import ErrorEstimate
-from pneutouch.units import KPA
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
 _TABULATION_SUMMARY = (
@@ -105,12 +107,14 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
     passed = run(batch, sensors[0].protocol.steps, shipped(), FIELDS)
     fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
     ends = np.cumsum([len(pressures) for pressures in driving_pressures])
-    rows = zip(sensors, ends.tolist(), driving_pressures, strict=True)
-    return [_answer(sensor, passed, fields, range(end - len(some), end)) for sensor, end, some in rows]
+    firsts = ends - [len(pressures) for pressures in driving_pressures]
+    free = _FreeCurves.of(passed.press.slices, passed.press.k[firsts])
+    rows = zip(sensors, firsts.tolist(), ends.tolist(), strict=True)
+    return [_answer(sensor, passed, fields, range(*span), free.row(i)) for i, (sensor, *span) in enumerate(rows)]
 
 
-def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range) -> Answered:
-    """Answer for one sensor, whose driving pressures are the ``rows`` of a pass."""
+def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: _FreeCurves) -> Answered:
+    """Answer for one sensor, whose driving pressures are the ``rows`` of a pass, and its free inflation."""
     response, press = passed.response, passed.press
     limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
     for pressure in press.batch.driving_pressure[rows].tolist():
@@ -126,7 +130,7 @@ def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: ra
         limitation = _TOO_SHALLOW
     if limitation is None and meets_ring(sensor):
         limitation = _MEETS_RING
-    curve, point, rupture = _inflation(sensor, press.slices, int(press.k[rows[0]]))
+    curve, point, rupture = _inflation(sensor, free, limit)
     limits = Limits(limit, rupture, sensor.gas.gauge_limit)
     return ModelAnswer(ModelResult(point, limits, curve, states), limitation)
 
@@ -141,14 +145,14 @@ def _state(
     field = {name: values[i, known] for name, values in fields.items()}
     depth = (press.apex[i] - whole.height[i, known]) * length
     range_end = float(np.nan_to_num(response.range_end[i]))
-    curve = response.indentation[i], response.force[i], response.rise[i] / KPA
+    line = Figures(*(float(column[i]) for column in response.lines))
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]),
         apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length,
         cavity_volume=float(press.volume(press.free)[i]) * length**3,
         range_end=range_end,
-        figures=figures(*curve) if range_end > 0 else None,
+        figures=line if range_end > 0 and line.force_high > line.force_low else None,
         indentation=depth,
         force=whole.point.force[i, known] * mu * length**2,
         pressure_rise=(whole.point.pressure[i, known] - press.pressure[i]) * mu,
@@ -170,23 +174,46 @@ def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -
     return sorted(happened, key=lambda event: event.indentation)
 
 
-def _inflation(sensor: Sensor, slices: AtlasSlices, wall: int) -> tuple[InflationCurve, LimitPoint, float | None]:
-    """Inflation to slightly beyond the limit point, the limit point, and the pressure (MPa) at break strain or None."""
+_INFLATED = 90
+"""Volumes from rest to the limit point at which a curve of free inflation is read from the tables; six lie beyond."""
+
+
+class _FreeCurves(NamedTuple):
+    """Free inflation at the wall ratios of m sensors, nondimensional: volume (m, n), heights of both apices, greatest
+    stretch, pressure."""
+
+    volume: Array
+    inner: Array
+    apex: Array
+    stretch: Array
+    pressure: Array
+
+    @classmethod
+    def of(cls, slices: AtlasSlices, walls: Index) -> _FreeCurves:
+        """The curves at some of the wall ratios of ``slices``."""
+        beyond = np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]
+        steps = np.concatenate([np.linspace(0.0, 1.0, _INFLATED + 1), beyond])
+        k, nu = np.repeat(walls, steps.size), np.tile(steps, walls.size)
+        apex = slices.free_apex(k, nu)[:, 0]
+        inner, stretch = slices.several(("inner_apex", "stretch"), k, nu, apex)
+        columns = REST_VOLUME + nu * slices.reach(k), inner, apex, stretch, slices.point(k, nu, apex).pressure
+        return cls(*(column.reshape(walls.size, -1) for column in columns))
+
+    def row(self, i: int) -> _FreeCurves:
+        """The curve of one sensor, (n,) each."""
+        return _FreeCurves(*(column[i] for column in self))
+
+
+def _inflation(sensor: Sensor, free: _FreeCurves, limit: float) -> tuple[InflationCurve, LimitPoint, float | None]:
+    """Curve of free inflation to slightly beyond its ``limit`` (MPa), the limit point, the pressure at break strain."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
-    nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
-    k = np.full(nu.size, wall)
-    apex = slices.free_apex(k, nu)[:, 0]
-    inner, stretch = slices.field("inner_apex", k, nu, apex), slices.field("stretch", k, nu, apex)
-    pressure = slices.point(k, nu, apex).pressure * mu
-    volume = (REST_VOLUME + nu * slices.reach(k)) * length**3
-    top = 90
+    inner, apex, pressure, top = free.inner, free.apex, free.pressure * mu, _INFLATED
     thinning = float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness
-    limit = float(slices.limit_pressure[wall]) * mu
     point = LimitPoint(float(inner[top]) * length, float(apex[top]) * length, limit, thinning)
     rupture = None
     if sensor.wall.break_stretch is not None:
-        over = np.flatnonzero(stretch[: top + 1] >= sensor.wall.break_stretch)
+        over = np.flatnonzero(free.stretch[: top + 1] >= sensor.wall.break_stretch)
         if over.size:
             j = max(int(over[0]), 1)
-            rupture = float(np.interp(sensor.wall.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
-    return InflationCurve(inner * length, apex * length, volume, pressure), point, rupture
+            rupture = float(np.interp(sensor.wall.break_stretch, free.stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
+    return InflationCurve(inner * length, apex * length, free.volume * length**3, pressure), point, rupture

@@ -229,10 +229,11 @@ def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
     Driving pressures beyond the limit are refused one by one, and the others are predicted.
     """
     library = CachedLibrary((folder,))
+    source = DesignSource.of(chunk.design, library)
     works = [_PointWork(point, point) for point in chunk.points]
     left = works
     while left:
-        drawn_scenes = [_tried(partial(_drawn, chunk.design, work.left, chunk.options, library)) for work in left]
+        drawn_scenes = [_tried(partial(_drawn, source, work.left, chunk.options, library)) for work in left]
         for work, scene, answers in zip(left, drawn_scenes, _answers(drawn_scenes, chunk.options.model), strict=True):
             work.take(scene if isinstance(scene, Exception) else _tried(partial(_evaluated, scene, answers, library)))
         left = [work for work in left if work.result is None and work.left.driving_pressures_kPa]
@@ -294,9 +295,9 @@ def _tried(work: Callable[[], _T]) -> _T | Exception:
         return error
 
 
-def _drawn(design: str, point: SweepPoint, options: PredictionOptions, library: Library) -> DrawnScene:
+def _drawn(source: DesignSource, point: SweepPoint, options: PredictionOptions, library: Library) -> DrawnScene:
     changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
-    return drawn(load_scene(design, changes, library), options)
+    return drawn(load_scene(source, changes, library), options)
 
 
 def _answers(scenes: Sequence[DrawnScene | Exception], model: str) -> list[dict[str, Answered]]:
