@@ -81,7 +81,14 @@ class Evaluation:
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """Findings of the print rules."""
+        """Findings of the print rules, with the ports that end them."""
+        from pneutouch.evaluation.subject import with_ports
+
+        return with_ports(self.findings_alone, self.scene)
+
+    @cached_property
+    def findings_alone(self) -> list[Finding]:
+        """Findings of the print rules; no port is drawn for their remedies, which takes longer than a prediction."""
         from pneutouch.evaluation.subject import sensor_findings
         from pneutouch.printability import SensorContext
 

@@ -138,7 +138,6 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
         findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
         findings += check_mould(assembly.mould)
     reasons = assembly.scene.design.accepted.reasons
-    findings = _with_ports(findings, assembly.scene)
     return sorted((_accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
 
 
@@ -149,7 +148,7 @@ _OF_PORTS = ("walls", "pins", "holes", "channels")
 """Rules whose findings on the connector another port may resolve."""
 
 
-def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
+def with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
     """Findings whose remedies name ports, where some resolve them: each was drawn and checked. Ports that take the
     design's tube come first; where the design names a tube, only these are named."""
     broken = {one.rule for one in findings if _names_port(one)}

@@ -104,10 +104,8 @@ class AtlasSolution(NamedTuple):
 
 
 class AtlasPress:
-    """A batch with its gas and inflated states, nondimensional; sensor i has slice ``k[i]`` of the atlas.
-
-    Every sensor ends its iterations by itself: its states are the same in any batch.
-    """
+    """A batch with its gas and inflated states, nondimensional; sensor i has slice ``k[i]`` of the atlas, and ends its
+    iterations by itself: its states are the same in any batch."""
 
     def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index) -> None:
         self.batch, self.slices, self.k = batch, slices, k

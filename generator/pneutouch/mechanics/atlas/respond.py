@@ -21,8 +21,7 @@ DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 NEAR = 0.03
 """Travel in R0 before buckling in which the table is less certain: the stiffness falls too fast for its resolution."""
 _CHUNK = 400
-"""Sensors in a pass: with 1,000 of different walls a press takes 2 to 5 times as long, because memory of their tables
-goes back to the system after each pass."""
+"""Sensors in a pass: with 1,000 of different walls a press takes 2 to 5 times as long, their tables leave the cache."""
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 20
 _WITHIN = 1.0e-8

@@ -109,8 +109,8 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
     ends = np.cumsum([len(pressures) for pressures in driving_pressures])
     firsts = ends - [len(pressures) for pressures in driving_pressures]
     free = _FreeCurves.of(passed.press.slices, passed.press.k[firsts])
-    rows = zip(sensors, firsts.tolist(), ends.tolist(), strict=True)
-    return [_answer(sensor, passed, fields, range(*span), free.row(i)) for i, (sensor, *span) in enumerate(rows)]
+    rows = zip(sensors, map(range, firsts, ends), zip(*free, strict=True), strict=True)
+    return [_answer(sensor, passed, fields, some, _FreeCurves(*curve)) for sensor, some, curve in rows]
 
 
 def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: _FreeCurves) -> Answered:
@@ -179,8 +179,7 @@ _INFLATED = 90
 
 
 class _FreeCurves(NamedTuple):
-    """Free inflation at the wall ratios of m sensors, nondimensional: volume (m, n), heights of both apices, greatest
-    stretch, pressure."""
+    """Free inflation at m wall ratios, nondimensional, (m, n) each: cavity, both apices' heights, greatest stretch."""
 
     volume: Array
     inner: Array
@@ -198,10 +197,6 @@ class _FreeCurves(NamedTuple):
         inner, stretch = slices.several(("inner_apex", "stretch"), k, nu, apex)
         columns = REST_VOLUME + nu * slices.reach(k), inner, apex, stretch, slices.point(k, nu, apex).pressure
         return cls(*(column.reshape(walls.size, -1) for column in columns))
-
-    def row(self, i: int) -> _FreeCurves:
-        """The curve of one sensor, (n,) each."""
-        return _FreeCurves(*(column[i] for column in self))
 
 
 def _inflation(sensor: Sensor, free: _FreeCurves, limit: float) -> tuple[InflationCurve, LimitPoint, float | None]:

@@ -153,7 +153,7 @@ def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgeme
         scene = load_scene(source, {"indentation.checked_waves": 0}, library)
         if predicted:
             evaluation = evaluate_scene(scene, dict, PredictionOptions())
-        findings = check(subject_of(assemble(scene))) if evaluation is None else evaluation.findings
+        findings = check(subject_of(assemble(scene))) if evaluation is None else evaluation.findings_alone
     except PneutouchError as error:
         return Judgement((None, "; ".join(part for part in (error.problem, error.remedy) if part)))
     broken = next(((f.rule, f"{f.body}: {f.message}") for f in findings if f.severity == "error"), None)
