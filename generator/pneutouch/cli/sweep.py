@@ -72,7 +72,7 @@ def sweep(
         with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         with bar("drawing the sensitivity"):
-            rows, written = write_companions(done.path)
+            rows, written = write_companions(done.path, _MOST)
             maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
         _report(done, rows, written, maps, json=json)
         if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
@@ -131,7 +131,7 @@ def _report(
     counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
 
-    echo(sweep_text(rows, written[0]))
+    echo(sweep_text(rows, sum(done.states.values()), written[0]))
     notify(f"{done.points} points, states: {counts}{there}")
     for path in [*written, *maps]:
         notify(f"written: {path}")
@@ -152,16 +152,15 @@ _FIGURES = {
 """Columns with their decimals, as `predict` shows the same figures."""
 
 
-def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
-    """Swept fields, figures and status of the first rows; if there are more, the file that holds them all."""
+def sweep_text(rows: list[dict[str, Any]], count: int, table: Path) -> str:
+    """Swept fields, figures and status of the first rows of ``count``; of more also the file that holds them all."""
     if not rows:
         return "no state"
     names = list(rows[0])
     swept = names[: names.index("driving_pressure_kPa")]
     head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *(name for name, _ in list(_FIGURES.values())[1:]), "status"]
-    shown = [_cells(row, swept) for row in rows[:_MOST]]
-    text = table_text(head, shown)
-    left = len(rows) - len(shown)
+    text = table_text(head, [_cells(row, swept) for row in rows])
+    left = count - len(rows)
     return f"{text}\n... and {left} more: {table}" if left else text
 
 

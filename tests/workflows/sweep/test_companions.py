@@ -102,7 +102,7 @@ def test_a_list_is_drawn_over_its_only_field(library, tmp_path):
     sweep(plan_of_file(tmp_path / "list.toml"), tmp_path / "y.nc", ALONE, library=library)
     figure = swept_figure(load(tmp_path / "y.nc"))
     assert figure.axes[0].key == "membrane_wall_thickness_mm" and figure.axes[0].values == (1.0, 1.2, 1.5)
-    rows = table_rows(load(tmp_path / "y.nc"))
+    rows = list(table_rows(load(tmp_path / "y.nc")))
     assert [row["membrane_wall_thickness_mm"] for row in rows[::4]] == [1.5, 1.0, 1.2]
     value = {row["membrane_wall_thickness_mm"]: row["sensitivity_kPa_per_N"] for row in rows[::4]}
     assert figure.value[:, 0].tolist() == [value[wall] for wall in (1.0, 1.2, 1.5)]
@@ -174,8 +174,8 @@ def test_bands_of_several_lines_are_hatched_apart():
 
 
 def test_the_printed_table_has_the_rated_pressure_and_one_number_of_decimals_a_column(swept):
-    rows = table_rows(load(swept))
-    head, *lines = sweep_text(rows, swept).splitlines()
+    rows = list(table_rows(load(swept)))
+    head, *lines = sweep_text(rows, len(rows), swept).splitlines()
     names = re.split(" {2,}", head)
     assert names[-4:] == ["range mm", "limit kPa", "rated kPa", "status"]
     shown = [dict(zip(names, re.split(" {2,}", line), strict=True)) for line in lines[: len(rows)]]
@@ -197,7 +197,7 @@ def test_friction_to_grip_objects_and_flags_are_swept_as_categories(tmp_path, li
     assert data.contact_friction.values.tolist() == [0.0, 0.3, np.inf]
     assert data.contact_object.values.tolist() == ["plate", "ball"]
     assert data.contact_base.values.tolist() == ["true", "false"]
-    rows = table_rows(data)
+    rows = list(table_rows(data))
     ok = {(row["contact_friction"], row["contact_object"]) for row in rows if row["status"] == "ok"}
     assert ok == {(0.0, "plate")} and {row["contact_base"] for row in rows} == {"true", "false"}
     assert "inf" in table_csv(rows).decode().splitlines()[-1].split(",")

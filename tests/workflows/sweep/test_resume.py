@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.workflows.sweep import journal, sweep
 from pneutouch.workflows.sweep.journal import Journal
-from pneutouch.workflows.sweep.work import chunks, study
+from pneutouch.workflows.sweep.work import chunks, study, unpacked
 from tests.running import in_new_process
 from tests.workflows.sweep.conftest import (
     ALONE,
@@ -136,6 +136,10 @@ def records(count):
     ]
 
 
+def read(journal):
+    return {number: unpacked(record) for number, record in journal.read().items()}
+
+
 def test_a_journal_cut_anywhere_gives_its_whole_lines_and_takes_new_ones(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", lambda handle: None)
     path, all_ = tmp_path / "journal", records(6)
@@ -149,9 +153,9 @@ def test_a_journal_cut_anywhere_gives_its_whole_lines_and_takes_new_ones(tmp_pat
         path.write_bytes(content[:cut])
         # A line that lacks its newline alone is whole.
         whole = max(n for end, n in zip(ends, before, strict=True) if max(end - 1, 0) <= cut)
-        assert journal.read() == dict(enumerate(all_[:whole]))
+        assert read(journal) == dict(enumerate(all_[:whole]))
         journal.append(all_[4:])
-        assert journal.read() == dict(enumerate(all_[:whole])) | {4: all_[4], 5: all_[5]}
+        assert read(journal) == dict(enumerate(all_[:whole])) | {4: all_[4], 5: all_[5]}
 
 
 @given(st.lists(st.tuples(st.integers(0, 10**6), st.integers(1, 255)), min_size=1, max_size=5))
@@ -164,7 +168,7 @@ def test_no_flipped_byte_ever_becomes_a_figure(tmp_path_factory, flips):
     for place, change in flips:
         content[place % len(content)] ^= change
     path.write_bytes(bytes(content))
-    found = journal.read()
+    found = read(journal)
     assert all(all_[k] == record for k, record in found.items())
     assert len(found) >= 5 - 2 * len(flips)
 

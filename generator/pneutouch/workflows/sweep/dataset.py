@@ -8,7 +8,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +29,7 @@ from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import check_output
 from pneutouch.workflows.sweep.variables import INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
-from pneutouch.workflows.sweep.work import Record, SweepStudy
+from pneutouch.workflows.sweep.work import SweepStudy, unpacked
 
 if TYPE_CHECKING:
     import xarray
@@ -44,7 +46,7 @@ MOST_BYTES = 2**30
 _CONTENT_HASH = "content_hash"
 
 
-def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
+def dataset(study: SweepStudy, records: dict[int, bytes]) -> xarray.Dataset:
     """Dataset of a finished sweep; ``records`` has every point by its number.
 
     Dimensions are those of the grid, or ``point``, and the driving pressure. Missing numbers are NaN, missing texts are
@@ -54,15 +56,16 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
     plan = study.plan
     requested_kPa = [study.point(i).driving_pressures_kPa for i in range(plan.count)]
     pressures_kPa = sorted({p for each_kPa in requested_kPa for p in each_kPa})
-    rows = _by_pressure(requested_kPa, pressures_kPa, records)
     shape, dims = plan.shape, plan.dimensions
-    content: dict[str, Any] = {}
-    for variable in STATE:
-        values = [[row.get(variable.name) for row in each] for each in rows]
-        content[variable.name] = _variable(variable, values, (*shape, len(pressures_kPa)), (*dims, PRESSURE))
-    for variable in POINT:
-        values = [records[i]["values"].get(variable.name) for i in range(plan.count)]
-        content[variable.name] = _variable(variable, values, shape, dims)
+    of_states, of_points = _columns(STATE, plan.count * len(pressures_kPa)), _columns(POINT, plan.count)
+    for i, requested in enumerate(requested_kPa):
+        record = unpacked(records[i])
+        _fill(of_points, i, record["values"])
+        for pressure_kPa, state in zip(requested, record["states"], strict=True):
+            _fill(of_states, i * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
+    content: dict[str, Any] = {v.name: _variable(v, of_points[v.name], shape, dims) for v in POINT}
+    whole_shape, whole_dims = (*shape, len(pressures_kPa)), (*dims, PRESSURE)
+    content = {v.name: _variable(v, of_states[v.name], whole_shape, whole_dims) for v in STATE} | content
     coordinates = {
         PRESSURE: (
             PRESSURE,
@@ -71,7 +74,7 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
         ),
         **_coordinates(study),
     }
-    whole = xarray.Dataset(content, coordinates, _attributes(study, rows, content))
+    whole = xarray.Dataset(content, coordinates, _attributes(study, content))
     whole.attrs[_CONTENT_HASH] = _content_hash(whole)
     return whole
 
@@ -146,23 +149,24 @@ def _check_size(path: Path) -> None:
         raise oversized(path, size, MOST_BYTES, "dataset")
 
 
-def _by_pressure(
-    requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
-) -> list[list[dict[str, Any]]]:
-    """States of every point, one for each pressure of the dimension; empty where a point does not have the pressure."""
-    rows = []
-    for index, pressures_of in enumerate(requested_kPa):
-        states = dict(zip(pressures_of, records[index]["states"], strict=True))
-        rows.append([states.get(p, {}) for p in pressures_kPa])
-    return rows
+def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, Any]:
+    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
+    return {v.name: np.full(count, "", object) if v.text else np.full(count, np.nan) for v in variables}
+
+
+def _fill(columns: dict[str, Any], row: int, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if value is not None and name in columns:
+            columns[name][row] = sys.intern(value) if isinstance(value, str) else value
 
 
 def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
-    names = {"long_name": variable.long_name}
-    if variable.text:
-        texts = np.array(["" if v is None else v for v in np.array(values, object).ravel()], object)
-        return dims, texts.reshape(shape), names
-    return dims, np.array(values, float).reshape(shape), {"units": variable.units, **names}
+    names = (
+        {"long_name": variable.long_name}
+        if variable.text
+        else {"units": variable.units, "long_name": variable.long_name}
+    )
+    return dims, values.reshape(shape), names
 
 
 Coordinate = tuple[str, Any, dict[str, str]]
@@ -200,7 +204,7 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     return np.array(values, float), {"units": declared.unit or "1", **names}
 
 
-def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: dict[str, Any]) -> dict[str, str]:
+def _attributes(study: SweepStudy, content: dict[str, Any]) -> dict[str, str]:
     plan = study.plan
     bases = sorted({text for text in content["error_sensitivity_basis"][1].ravel() if text})
     design = study.base.model_dump(mode="json")
@@ -221,7 +225,7 @@ def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: di
 _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 
-def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
+def table_rows(content: xarray.Dataset) -> Iterator[dict[str, Any]]:
     """A row for each state, in the dataset's order: swept fields, driving pressure, figures; None if missing."""
     dims = list(content["status"].dims)
     names = [v.name for v in (*STATE, *POINT)]
@@ -229,12 +233,10 @@ def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
     swept = [*(str(dim) for dim in dims if dim != PRESSURE), *fields]
     arrays = {name: content[name].values for name in (*swept, PRESSURE, *names)}
     of_dims = {name: [dims.index(dim) for dim in content[name].dims] for name in arrays}
-    rows = []
     for place in np.ndindex(*(content.sizes[dim] for dim in dims)):
         row = {name: _plain(values[tuple(place[k] for k in of_dims[name])]) for name, values in arrays.items()}
         if row["status"]:
-            rows.append(row)
-    return rows
+            yield row
 
 
 def _plain(value: Any) -> Any:
@@ -243,10 +245,12 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and np.isnan(value) else value
 
 
-def table_csv(rows: list[dict[str, Any]]) -> bytes:
+def table_csv(rows: Iterable[dict[str, Any]]) -> bytes:
     """Rows as a CSV file; numbers with twelve digits."""
-    head = list(rows[0]) if rows else []
-    return csv_bytes(head, [[_cell(value) for value in row.values()] for row in rows])
+    every = iter(rows)
+    first = list(islice(every, 1))
+    head = list(first[0]) if first else []
+    return csv_bytes(head, ([_cell(value) for value in row.values()] for row in chain(first, every)))
 
 
 def _cell(value: Any) -> Any:
@@ -269,18 +273,19 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
             raise InputError(f"{path} is in the place of {what}", key="out", remedy="give another `out`, or move it")
 
 
-def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
-    """Write table and pictures next to a dataset; return rows and paths. Raises InputError if it is not as written."""
+def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], list[Path]]:
+    """Write table and pictures next to a dataset; return the table's first rows to be ``shown``, and the paths. Raises
+    InputError if it is not as written."""
     from pneutouch.report.swept import pictures
 
     content = stored_dataset(out)
-    rows, swept = table_rows(content), swept_figure(content)
-    files = {out.with_suffix(".csv"): table_csv(rows)}
+    swept = swept_figure(content)
+    files = {out.with_suffix(".csv"): table_csv(table_rows(content))}
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
     replace_files(files)
-    return rows, list(files)
+    return list(islice(table_rows(content), shown)), list(files)
 
 
 def _picture_files(out: Path, name: str) -> tuple[Path, Path]:

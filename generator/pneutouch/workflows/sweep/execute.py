@@ -12,7 +12,7 @@ from pneutouch.stopping import uninterrupted
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
 from pneutouch.workflows.sweep.grid import SweepPlan
 from pneutouch.workflows.sweep.journal import Journal, WorkFolder
-from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, unpack
+from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, packed, study, unpack, unpacked
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 
 Progress = Callable[[int, int], None]
@@ -75,12 +75,13 @@ def sweep(
         return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
 
 
-def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]:
+def _fitting(records: dict[int, bytes], study: SweepStudy) -> dict[int, bytes]:
     """Records with a state for every driving pressure of their point; points of other records are computed again."""
     return {
         index: record
         for index, record in records.items()
-        if 0 <= index < study.plan.count and len(record["states"]) == len(study.point(index).driving_pressures_kPa)
+        if 0 <= index < study.plan.count
+        and len(unpacked(record)["states"]) == len(study.point(index).driving_pressures_kPa)
     }
 
 
@@ -105,7 +106,7 @@ def _compute(
     machines: ComputeResources,
     folder: WorkFolder,
     journal: Journal,
-    records: dict[int, Record],
+    records: dict[int, bytes],
     progress: Progress,
 ) -> None:
     """Fill ``records`` with every point; each chunk is kept in the journal as soon as it is done."""
@@ -115,12 +116,12 @@ def _compute(
         for batch in batches:
             with uninterrupted():
                 journal.append(batch)
-                records.update((record["point"], record) for record in batch)
+                records.update((record["point"], packed(record)) for record in batch)
             progress(len(records), total)
 
 
 @contextlib.contextmanager
-def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
+def _keeping(folder: WorkFolder, records: dict[int, bytes], total: int) -> Iterator[None]:
     """Context that adds, to anything that stops the work, how far it came and that it can be continued."""
 
     def kept() -> str:
@@ -141,7 +142,7 @@ def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iter
 
 
 def _batches(
-    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, Record]
+    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, bytes]
 ) -> Generator[list[Record], None, None]:
     """Records of the missing points, chunk by chunk, as they are done."""
     pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])

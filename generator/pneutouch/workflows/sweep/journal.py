@@ -19,7 +19,7 @@ from pneutouch.errors import InputError
 from pneutouch.output.files import digest, write_synced
 from pneutouch.spec.files import read_bytes
 from pneutouch.stopping import cleaned, uninterrupted
-from pneutouch.workflows.sweep.work import Record
+from pneutouch.workflows.sweep.work import Record, packed
 
 _CHECKSUM_DIGITS = 16
 
@@ -34,14 +34,14 @@ class Journal:
     def __init__(self, path: Path, fingerprint: str) -> None:
         self.path, self.fingerprint = path, fingerprint
 
-    def read(self) -> dict[int, Record]:
+    def read(self) -> dict[int, bytes]:
         """Finished points by number; damaged lines are removed from the file. Raises InputError for another sweep's
         journal."""
         if not self.path.exists():
             return {}
         lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")
         entries = [(line, entry) for line in lines if (entry := _entry(line)) is not None]
-        records: dict[int, Record] = {}
+        records: dict[int, bytes] = {}
         for _, entry in entries:
             if entry.sweep != self.fingerprint:
                 problem = (
@@ -50,7 +50,7 @@ class Journal:
                 )
                 remedy = "`fresh` starts over, or give another `out`"
                 raise InputError(problem, file=self.path.parent, remedy=remedy)
-            records |= {record["point"]: record for record in entry.records}
+            records |= {record["point"]: packed(record) for record in entry.records}
         whole = [line for line, _ in entries]
         if lines != [*whole, b""]:
             self._rewrite(whole)

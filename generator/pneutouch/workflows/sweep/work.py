@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
+import zlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -192,6 +194,17 @@ def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
 CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
 """Number of points in a chunk by model (others: 1): about a second of work, so that a stop or a slow machine costs
 little. The atlas answers them together."""
+
+
+def packed(record: Record) -> bytes:
+    """A record as it waits in memory for the dataset: compressed, in a tenth of the space."""
+    return zlib.compress(json.dumps(record).encode(), 1)
+
+
+def unpacked(content: bytes) -> Record:
+    """The record that was packed."""
+    return cast("Record", json.loads(zlib.decompress(content)))
+
 
 Record = dict[str, Any]
 """A finished point as plain data: ``point`` (its number), ``states`` by ascending driving pressure, ``values``."""
