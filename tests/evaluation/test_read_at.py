@@ -33,6 +33,15 @@ def test_a_sensor_that_obeys_the_prediction_is_not_off(ends):
         assert read[key] == pytest.approx(value, rel=2e-3, abs=2e-3), key
 
 
+def test_a_depth_just_beyond_the_range_is_read_at_its_end():
+    """First contact is found to some 0.01 mm: the last step of a run must not be lost to that, nor its force."""
+    depths = np.linspace(0.0, 1.0014 * RANGE_END, 15)
+    read = figures_at(TRAVEL, *curve(TRAVEL), RANGE_END, [[depths]])
+    whole = line_figures(figures(depths, *curve(depths)))
+    for key in ("force_range_N", "stiffness_N_per_mm", "sensitivity_kPa_per_N"):
+        assert read[key] == pytest.approx(whole[key], rel=0.01), key
+
+
 def test_what_is_beyond_the_predicted_range_is_left_out():
     read = figures_at(TRAVEL, *curve(TRAVEL), 5.0, [[np.linspace(0.0, 6.0, 13)]])
     assert read["force_range_N"] == pytest.approx(curve(np.array(5.0))[0], rel=1e-3)

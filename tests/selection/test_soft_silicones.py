@@ -35,3 +35,21 @@ def test_a_soft_silicone_is_found_and_the_solid_agrees(resin, library):
 def test_a_silicone_beyond_the_opened_box_is_named_with_the_reason(library):
     lines = processes_lines(cast(library, "Ecoflex0010"))
     assert [line for line in lines if "Ecoflex0010" in line and "soft" in line]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("wishes", "resin"),
+    [
+        ({"sensitivity_kPa_per_N": 1.0}, "DragonSkin20"),
+        ({"force_range_N": 30.0}, "MoldStar16"),
+        ({"stiffness_least_N_per_mm": 3.0}, "DragonSkin30"),
+        ({"stiffness_least_N_per_mm": 3.0}, "Ecoflex0030"),
+    ],
+)
+def test_the_plate_grows_with_a_large_dome_so_that_none_is_lost_to_its_edge(wishes, resin, library):
+    content = {"target": wishes, "given": {"materials": [resin]}, "setting": {"processes": ["casting"]}}
+    ((_, run),) = select_processes(validate(Target, content, "target"), "target", library).best
+    found = source_of(run.base, run.assignments(run.answer.designs[0]))
+    (state, *_) = evaluate(found, model="solid", library=library).prediction.states
+    assert state.range_end == pytest.approx(0.75 * found.content["membrane"]["inner_radius_mm"], rel=0.01)

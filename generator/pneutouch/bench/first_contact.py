@@ -32,7 +32,7 @@ membrane, which begin linearly, w = 1 for a dome whose stiffness grows from zero
 UNSURE = 4.0
 """Ratio of an onset's standard error to the run's median above which a contact is too light for a fit: our choice."""
 
-_LEAST_POINTS, _MOST_POINTS = 6, 200
+_LEAST_POINTS, _MOST_POINTS, _NO_LENGTH = 6, 200, 1e-8
 _BACK = 3
 """Length of the stretch without contact in the fit, as a multiple of that with contact."""
 
@@ -87,7 +87,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
     begin = max(late, (start + end) // 2)
-    return baseline(blocks, min(begin, max(end - 4, start)), end)
+    return baseline(blocks, min(begin, max(end - 4, start)), max(end, start + 1))
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
@@ -122,7 +122,8 @@ def onsets(
         None if at is None else _loading(blocks, one, base, at, limit, sign)
         for at, one, base in zip(crossed, parts, bases, strict=True)
     ]
-    real = [loading for loading in loadings if loading is not None]
+    # A coarse force may pass from nothing to the limit within a block: such a loading has no travel to fit.
+    real = [loading for loading in loadings if loading is not None and loading.length > _NO_LENGTH]
     if not real:
         return [None] * len(parts)
     length = float(np.median([loading.length for loading in real]))
@@ -133,7 +134,7 @@ def onsets(
     some = any(loading.reaches for loading in real)
     errors = [
         np.inf
-        if loading is None or fit is None or (some and not loading.reaches)
+        if loading is None or loading.length <= _NO_LENGTH or fit is None or (some and not loading.reaches)
         else _error(loading, fit, float(bend[0]), length)
         for loading, fit in zip(loadings, fits, strict=True)
     ]

@@ -26,14 +26,10 @@ _SURELY_ABSOLUTE = (0.85, 1.1)
 """`ABSOLUTE` where the pressure may be off for other reasons: up to 1.3 km above the sea."""
 
 LOADED = 0.1
-"""Share of the greatest force beyond which a force before contact may be a preload; share of the whole rise beyond
-which a rise at constant force raises a question: our choice."""
+"""Share of the greatest force beyond which a force before contact may be a preload: our choice."""
 
-_FLAT_POINTS, _NOISES, _LEVEL = 3, 6.0, 2e-3
-"""Least number of points of a flat end of the force; tolerance in noise and as a share of the greatest force."""
-
-_PARTS, _SWINGS = 200, 0.3
-"""Parts of a leak run whose means show presses, and least rise and fall as a share of their span: our choice."""
+_PARTS, _SWINGS, _NOISY = 200, 0.3, 12.0
+"""Parts of a leak run whose means show presses; least rise and fall, in their span and their noise: our choice."""
 
 _START = 1.0
 """Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
@@ -50,9 +46,9 @@ def looks_absolute(off_kPa: float, within: tuple[float, float] = ABSOLUTE) -> bo
 
 
 def run_questions(curve: MeasuredCurve, columns: ColumnMap) -> list[str]:
-    """Questions that a record raises by itself: on its kind, a preload, a flat end of the force, its warnings."""
+    """Questions that a record raises by itself: on its kind, a preload, its warnings."""
     doubts = (warning.why for warning in curve.warnings if warning.kind == "asked")
-    asked = (_kind(curve), _loaded(curve, columns), _flat(curve, columns), *doubts)
+    asked = (_kind(curve), _loaded(curve, columns), *doubts)
     return [text for text in asked if text is not None]
 
 
@@ -75,22 +71,6 @@ def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
     return (
         f"column {columns.force.name}: reads {number(zeros[0])} N before contact, {abs(zeros[0]) / top:.2g} times "
         "what the press adds; it is subtracted: a scale that was not zeroed, or was the sensor pressed already?"
-    )
-
-
-def _flat(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
-    """Question about a force that stays at its greatest value while the pressure still rises; None if it does not."""
-    force, rise = curve.force, curve.rise
-    if force.size < _FLAT_POINTS + 2 or not math.isfinite(curve.noise[0]):
-        return None
-    top = force >= force.max() - max(_NOISES * curve.noise[0], _LEVEL * float(force.max()))
-    first = int(top.argmax())
-    if force.size - first < _FLAT_POINTS or rise[-1] - rise[first] < LOADED * float(np.ptp(rise)):
-        return None
-    return (
-        f"column {columns.force.name}: stays at {number(float(force.max()))} N over the last {force.size - first} "
-        f"points while the pressure rises by {number(float(rise[-1] - rise[first]) / KPA)} kPa: is the force sensor "
-        "at its end?"
     )
 
 
@@ -139,7 +119,7 @@ def _swing(blocks: Blocks) -> str | None:
     up = float((means - np.minimum.accumulate(means)).max())
     down = float((np.maximum.accumulate(means) - means).max())
     noise = float(np.median(np.abs(np.diff(means))))
-    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), 2 * _NOISES * noise):
+    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), _NOISY * noise):
         return None
     return (
         f"the pressure goes up and down by {number(float(np.ptp(means)) / KPA)} kPa: presses, whose force is not named?"

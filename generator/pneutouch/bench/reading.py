@@ -43,9 +43,13 @@ _PRESSED = 30.0
 PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force", "pressure"), ("time", "pressure")
 """Channels of a run with a plate, of a run pressed by hand, whose travel is unknown, and of a run without contact."""
 
-_COPIED = 1e-6
-"""Difference, as a share of its span, up to which a channel is a copy of another (rounding): our choice. No two
-instruments agree so closely."""
+_COPIED = 3e-4
+"""Difference, as a share of its span, up to which a channel is a copy of another (rounded, with a little noise): our
+choice. No two instruments agree so closely, and no dome is so linear."""
+
+_STILL, _GROWN, _RISEN = 1e-3, 0.02, 0.2
+"""Shares of a channel's span: within the first of its greatest value it stays there; growth over as much travel before,
+and rise of the force under a position that stays, above which it is at the end of its range: our choice."""
 
 _EXACT = 1e-9
 """Relative difference up to which two blocks hold the same number: summing rounds."""
@@ -86,12 +90,14 @@ def read_blocks(
     warnings = [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][:cut]
     if pressed:
         warnings += lagging(blocks)
-        _check_apart(blocks, names)
+        _check_apart(blocks, columns, keys)
         if "position" in keys:
             _check_alive(blocks, names)
         warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
     top_kPa = rig.pressure_range_kPa
     warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top_kPa, KPA, "kPa")
+    clipped = {one.why.split(" ", 1)[0] for one in warnings if one.kind == "clipped"}
+    warnings += _at_end(blocks, [key for key in keys if key not in clipped]) if pressed else []
     return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
@@ -127,18 +133,50 @@ def scaled(
     return converted
 
 
-def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
+def _at_end(blocks: Blocks, keys: Sequence[str]) -> list[SuspectInterval]:
+    """Questions on channels that stay at their greatest value, noise aside, while another goes on: at their end."""
+    found = []
+    others = {"force": "position", "pressure": "position", "position": "force"}
+    others = others if np.ptp(blocks.position) > 0 else {"force": "pressure", "pressure": "force"}
+    for key, other in ((key, others[key]) for key in keys if key in others):
+        values, follows = getattr(blocks, key), getattr(blocks, other)
+        noise = float(np.median(np.abs(np.diff(values, 2)))) if values.size > 2 else 0.0
+        within = max(4.0 * noise, _STILL * float(np.ptp(values)))
+        for start, end in _runs(values >= values.max() - within):
+            went = float(follows[start:end].max() - follows[start])
+            earlier = np.flatnonzero(follows[:start] <= follows[start] - went)
+            # A position that stays is a hold, in which the force relaxes: at its end alone the force goes on to rise.
+            if key == "position":
+                ended = went > _RISEN * float(np.ptp(follows)) > 0.0
+            else:
+                ended = False
+                if earlier.size and went > 0.0:
+                    slope = (values[start] - values[earlier[-1]]) / (follows[start] - follows[earlier[-1]])
+                    ended = bool(slope * went > max(3.0 * within, _GROWN * float(np.ptp(values))))
+            if ended:
+                why = f"the {key} stays at its greatest value while the {other} goes on: is that the end of its range?"
+                begin, finish = float(blocks.time[start]), float(blocks.time[end - 1])
+                found.append(SuspectInterval(begin, finish, why, True, "asked"))
+                break
+    return found
+
+
+def _check_apart(blocks: Blocks, columns: ColumnMap, keys: Sequence[str]) -> None:
     """Raise InputError if one channel is a linear function of another, as when a column is copied or named twice."""
-    known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in names]
+    known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in keys]
     for (first, one), (second, other) in itertools.combinations(known, 2):
         spans = float(np.ptp(one)), float(np.ptp(other))
         if blocks.size < 1 or one.size < 3 or min(spans) <= 0:
             continue
         slope, level = np.polyfit(one, other, 1)
         if np.abs(other - slope * one - level).max() <= _COPIED * spans[1]:
+            of = [getattr(columns, key) for key in (first, second)]
+            scale = [UNITS[key][column.unit] * column.sign for key, column in zip((first, second), of, strict=True)]
+            times = slope * scale[0] / scale[1]
             raise InputError(
-                f"columns {names[first]} and {names[second]} hold the same values"
-                + ("" if math.isclose(slope, 1.0, rel_tol=1e-3) else f", times {slope:.4g}"),
+                f"columns {of[0].name} and {of[1].name} hold the same values"
+                + ("" if math.isclose(times, 1.0, rel_tol=1e-3) else f", times {times:.4g}")
+                + (" and an offset" if abs(level) > _COPIED * spans[1] else ""),
                 file=blocks.file,
                 remedy=f"{first} and {second} must be measured apart: was one column copied, or named twice?",
             )

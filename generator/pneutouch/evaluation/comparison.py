@@ -326,7 +326,8 @@ def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], in
     return [*notes, *dict.fromkeys(note for sensor in sensors for note in sensor.notes)]
 
 
-_ROUNDING, _LEAST_POINTS = 1e-9, 3
+_ROUNDING, _BEYOND, _LEAST_POINTS = 1e-9, 0.01, 3
+"""Share of a range end up to which a measured depth beyond it is read there: no first contact is found more exactly."""
 
 
 def figures_at(
@@ -347,7 +348,7 @@ def figures_at(
     read = PchipInterpolator(travel, np.stack([force[kept][first], rise_kPa[kept][first]], axis=1))
     averages = []
     for runs in specimens:
-        inside = (np.minimum(at[at <= range_end * (1 + _ROUNDING)], travel[-1]) for at in runs)
+        inside = (np.minimum(at[at <= range_end * (1 + _BEYOND)], travel[-1]) for at in runs)
         fitted = [figures(at, *read(at).T) for at in inside]
         each = [line_figures(one) for one in fitted if one is not None]
         if each:

@@ -24,7 +24,8 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
     across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
     target = tradeoff.window_kPa_per_N or tradeoff.force
     if short and not target and np.median(np.concatenate(short)) < _ALIKE:
-        return replace(_reached(tradeoff, short), x=across)
+        across += f"\nat the ends of a bar: greatest force range; in between\n{tradeoff.gauge_kPa:g} kPa, what is left"
+        return replace(_reached(tradeoff, short), x=f"{across} of the gauge, over the sensitivity")
     chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
     xlim, ylim = _limits(tradeoff)
     # The cavity pressure reaches the end of the pressure sensor's range: no design is beyond.
@@ -55,22 +56,22 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
 def _reached(tradeoff: TradeOff, short: list[Array]) -> Panel:
     """Sensitivities that each resin reaches, with the force range at both ends; thin where another limit than the
     gauge ends it, by shares ``short`` (n,) of its range."""
-    key = f"force range {tradeoff.gauge_kPa:g} kPa (gauge) / sensitivity"
     order = sorted(range(len(short)), key=lambda k: -tradeoff.known[k].sensitivity[0])
     titles, lines, notes = [tradeoff.known[k].resin.material.title for k in order], [], []
     for k, (front, missing) in enumerate((tradeoff.known[each], short[each]) for each in order):
         s, row = front.sensitivity, np.full(front.sensitivity.size, float(k))
         tone = ACCENT if tradeoff.spots and titles[k] == tradeoff.spots[0].resin else INK
         whole = np.where(missing < _ALIKE, row, np.nan)
-        lines.append(PlotLine(s, whole, "" if k else key, tone=tone, width=3.5))
+        lines.append(PlotLine(s, whole, tone=tone, width=3.5))
         lines.append(PlotLine(s, row, tone=tone, width=0.7))
         notes += [Note(f"{front.force[e]:.3g} N", (float(s[e]), k), (-1.0 - 2.0 * e, 0.0)) for e in (0, -1)]
     for k, spot in enumerate(spot for spot in tradeoff.spots if spot.resin in titles):
         at = spot.figures.sensitivity, float(titles.index(spot.resin))
         lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
-        notes.append(Note(spot.label, at, (0.0, 1.0), bold=k == 0))
+        best = f"; the best here {tradeoff.gauge_kPa / at[0]:.3g} N"
+        notes.append(Note(spot.label + best, at, (0.0, 1.0), bold=k == 0))
     if max(missing.max() for missing in short) >= _ALIKE:
-        lines.append(PlotLine(label="less: another limit", width=0.7))
+        lines.append(PlotLine(label="thin: less, another limit ends the range", width=0.7))
     reached = np.concatenate([front.sensitivity for front in tradeoff.known])
     xlim = reached.min() / 3.0, 3.0 * reached.max()
     return Panel("", "", tuple(lines), tuple(notes), xlim=xlim, log="x", rows=tuple(titles))

@@ -139,6 +139,9 @@ _LOADED, _COPY, _COMPARED = 0.1, 0.5, 20_000
 force and pressure alike, above which one may be a copy of the other; most readings that are compared: our choice. Noise
 makes hardly any two readings the same."""
 
+_ROUNDED = 5e-5
+"""Greatest difference of all readings of two runs, as a share of the greatest, up to which one is the other rounded."""
+
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 """Largest difference, in kPa and relative, of the pressure before contact from a driving pressure of the design at
 which the run is taken to be at that: a reset's scatter."""
@@ -193,7 +196,13 @@ class _Gathered:
         """An earlier file that has most of this one's readings under load; None if there is none."""
         under_load = np.abs(blocks.force) > _LOADED * np.abs(blocks.force).max()
         readings = (blocks.force + 1j * blocks.pressure)[under_load][:_COMPARED]
-        copied = (name for name, known in self.readings.items() if np.isin(readings, known).mean() > _COPY)
+
+        def same(known: NDArray[np.complex128]) -> bool:
+            """True for a copy, with fewer decimals too."""
+            alike = known.size == readings.size and np.abs(known - readings).max() < _ROUNDED * np.abs(readings).max()
+            return bool(alike or np.isin(readings, known).mean() > _COPY)
+
+        copied = (name for name, known in self.readings.items() if same(known))
         first = next(copied, None) if readings.size else None
         self.readings[file] = readings
         return first
@@ -364,13 +373,18 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gat
     stated_kPa = scene.design.pneumatics.driving_pressures_kPa
     nearest_kPa = min(stated_kPa, key=lambda p: abs(p - read_kPa))
     near = abs(nearest_kPa - read_kPa) <= max(_NEAR_KPA, _NEAR_SHARE * nearest_kPa)
-    if not near and any(looks_absolute(read_kPa - p) for p in (0.0, *stated_kPa)):
-        column = gathered.sources[curve.run.file].columns.pressure
+    column = gathered.sources[curve.run.file].columns.pressure
+    units, declared = UNITS["pressure"], column.unit.removesuffix(ABSOLUTE)
+    # In a smaller unit too: hectopascals under a heading of kilopascals are no driving pressure.
+    smaller = [unit for unit in units if units[unit] < units[declared] and not unit.endswith(ABSOLUTE)]
+    for unit in () if near else (declared, *smaller):
+        if not any(looks_absolute(read_kPa * units[unit] / units[declared] - p) for p in (0.0, *stated_kPa)):
+            continue
         raise InputError(
             f"{read_kPa:.4g} kPa before contact, which looks like an absolute pressure",
             file=curve.run.file,
             key=f"column {column.name}",
-            remedy=f"give `columns` pressure={column.name}:{column.unit}{ABSOLUTE}, of which the ambient pressure of "
+            remedy=f"give `columns` pressure={column.name}:{unit}{ABSOLUTE}, of which the ambient pressure of "
             "the design is subtracted",
         )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)

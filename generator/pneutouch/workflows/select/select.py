@@ -59,7 +59,7 @@ from pneutouch.workflows.select.checks import (
 _CONFIRMED = 3
 """Number of designs that the solid confirms."""
 _NOTHING = SelectionResult([], None, [], 0)
-_PLATE_SHARE = 1.25
+_PLATE_SHARE = 1.6
 """Radius of the plate over R0 if no base gives one: the contact of an inflated dome grows past R0."""
 
 
