@@ -191,3 +191,20 @@ def test_a_mould_is_drawn_around_the_membrane_and_a_printed_one_has_none():
     assert np.abs(drawn[:, 0]).max() > outer + 1
     with pytest.raises(pt.InputError, match="printed, not cast"):
         pt.load("paper-dome").plot_mould()
+
+
+@pytest.mark.parametrize(
+    ("keyword", "field"),
+    [
+        ("material", "membrane.material"),
+        ("connector_material", "connector.material"),
+        ("mould_material", "mould.material"),
+        ("port", "connector.port"),
+        ("gauge", "pneumatics.gauge"),
+        ("profile", "print.profile"),
+    ],
+)
+def test_a_name_that_nothing_has_is_refused_at_once(keyword, field):
+    with pytest.raises(InputError) as refused:
+        pt.Design(**{keyword: "nope"})
+    assert refused.value.value == "nope" and refused.value.key in (keyword, field)

@@ -307,6 +307,6 @@ def test_the_remedy_of_a_model_is_never_the_model_that_has_just_refused():
 
 
 def test_a_table_with_a_limitation_states_no_error_of_its_own():
-    found = predict("", PAPER.replace(depth=0.01 * 9.25), [0.0], model="atlas")
+    found = predict("", PAPER.replace(depth=0.15 * 9.25), [0.0], model="atlas")
     assert found.error_estimate.sensitivity_tabulation_relative is None
     assert found.error_estimate.model_choice is not None

@@ -24,6 +24,7 @@ from pneutouch.mechanics.models.choice import model_options
 from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override
@@ -106,6 +107,14 @@ class Design(show.Shown):
             self.file = self.source.changed({})
             if "material" in fields:
                 membrane_material_of(self.file, WHERE, Library.default())
+            for field in {keywords(DesignFile).get(one, "") for one in fields} - {"", "membrane.material"}:
+                table, _, key = field.partition(".")
+                model = table_of(DesignFile, table) if key else None
+                kind, chosen = (
+                    (declaration(model, key).registry, attrgetter(field)(self.file)) if model else (None, None)
+                )
+                if kind and chosen is not None:
+                    Library.default().load(kind, chosen, file=WHERE, key=field)
 
     @classmethod
     def of(cls, source: DesignSource) -> Design:

@@ -26,7 +26,7 @@ RELIABILITY = (
 
 HANDLING = (
     "The figures assume a rim that does not move: glue or clamp the flange all round.",
-    "Leak test before first use: hold the highest driving pressure for ten minutes.",
+    "Leak test before first use: hold the highest driving pressure, at most the rated one, for ten minutes.",
     "Condition with five full-depth indentations before calibrating; re-zero after every change of driving pressure.",
     "Reset the driving pressure often: a sealed cavity drifts with temperature.",
     "Clean with water and mild soap. Keep from solvents, sunlight and sharp edges.",

@@ -68,7 +68,7 @@ def as_drawn(sheet: SheetData) -> list[SheetBlock]:
             f"{state.driving_pressure_kPa:g}",
             *(DASH if v is None else f"{v:.2f}" for v in (state.sensitivity_kPa_per_N, state.stiffness_N_per_mm)),
             DASH if state.force_range_N is None else f"0 to {state.force_range_N[1]:.1f}",
-            next((f"{e.kind}, {state.range_end_mm:.2f} mm" for e in state.events if e.ends_range), "depth"),
+            f"{next((e.kind for e in state.events if e.ends_range), 'depth')}, {state.range_end_mm:.2f} mm",
         ]
         for state in sheet.as_drawn
     ]
