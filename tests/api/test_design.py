@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import pneutouch as pt
 from pneutouch.api.fields import keywords
+from pneutouch.errors import InputError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.target import Target

@@ -206,8 +206,11 @@ def test_a_shallow_press_is_left_to_the_solid(depth):
     auto, solid = (predict("", sensor, [7.2388 * KPA], model=model) for model in ("auto", "solid"))
     assert auto.model == "solid"
     assert auto.states[0].figures == solid.states[0].figures
-    with pytest.raises(InputError, match="the depth"):
-        predict("", sensor, [7.2388 * KPA], model="atlas")
+    if depth < 0.1:
+        with pytest.raises(InputError, match="depth"):
+            predict("", sensor, [7.2388 * KPA], model="atlas")
+    else:
+        assert predict("", sensor, [7.2388 * KPA], model="atlas").error_estimate.model_choice is not None
 
 
 @pytest.mark.slow

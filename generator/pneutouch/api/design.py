@@ -221,7 +221,7 @@ class Design(show.Shown):
         model: str | None = None,
         tolerance: float | str | None = None,
     ) -> DrivingResult:
-        """The driving pressures for tasks in order: a file, or mappings of a figure's key (and ``name``).
+        """Driving pressures for tasks in order: a file, or mappings of a figure to a value (and ``name``).
 
         ``leak`` is a results file of coupons or what `characterize` wrote. Without ``model`` the cheapest model that
         meets ``tolerance`` is used. Raises InputError.

@@ -18,14 +18,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
 
 
-_FLAGS = {
-    "profile": "--profile",
-    "material": "--material",
-    "design": "--design",
-    "mixing": "--mixing",
-    "only": "--only",
-    "copies": "--copies",
-}
+_CHOSEN = ("profile", "material", "design", "mixing", "only", "copies")
 
 
 @app.command()
@@ -70,7 +63,7 @@ def coupons(
     json: JsonOption = False,
 ) -> None:
     """Make test prints to measure a printer and its resins, or enter what was measured."""
-    given = {key: value for key, value in locals().items() if key in _FLAGS and value}
+    given = {key: value for key, value in locals().items() if key in _CHOSEN and value}
     with reporting():
         if results is not None:
             _enter(results, out, given, json)
@@ -94,7 +87,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
     from pneutouch.errors import InputError
 
     if given:
-        flags = ", ".join(_FLAGS[key] for key in given)
+        flags = ", ".join(f"--{key}" for key in given)
         raise InputError(f"--results {path}: {flags} cannot be given with it: the file holds the measurements")
     from pneutouch.workflows.coupons.results import enter_results
 

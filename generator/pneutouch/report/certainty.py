@@ -22,14 +22,8 @@ _FIGURES = {
 
 _ONLY_MODEL = "the contact is not symmetric about the axis, which the other models take it to be"
 
-_INPUTS = {
-    "shear_modulus": "shear modulus",
-    "wall_thickness": "wall",
-    "inner_radius": "inner radius",
-    "dead_volume": "dead volume",
-    "ambient_pressure": "ambient pressure",
-    "driving_pressure": "driving pressure",
-}
+_PLAIN = ("shear_modulus", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
+_INPUTS = {name: name.replace("_", " ") for name in _PLAIN} | {"wall_thickness": "wall"}
 
 
 def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...]) -> dict[str, UncertaintyRecord]:

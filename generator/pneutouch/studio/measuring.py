@@ -119,8 +119,8 @@ class CalibratedSensor(CommandWords):
 
 @dataclass(frozen=True)
 class _Given:
-    """Input of a job: the campaign's folder (relative to the working folder), its files, ``planned`` if a campaign file
-    came with them, the page's design (None: the campaign's) and the options for reading files."""
+    """Input of a job: the campaign's folder below the working folder, its files, ``planned`` if with a campaign file,
+    the page's design (None: the campaign's), options for reading, and the user's folder, ``root``."""
 
     data: Path
     files: list[str]

@@ -183,7 +183,7 @@ class Substrate:
         return float(np.prod([share for other, share in pairs if _meet(row, other)]))
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
-        """Amplitude, mm/N, of the compliance at a harmonic of a row's pitch among all rows; sign as `amplitude`."""
+        """The function `amplitude`, mm/N, for a row under this patch, with the other rows there too."""
         share = self.shares[self.bars.index(row)]
         return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / share
 

@@ -153,16 +153,8 @@ def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -
 BACKGROUND = (0, 0, 0, 255)
 """Opaque black: the background of the utility's own files (BackGroundMaterialRGBA)."""
 
-PALETTE = (
-    (230, 159, 0, 255),
-    (86, 180, 233, 255),
-    (0, 158, 115, 255),
-    (240, 228, 66, 255),
-    (0, 114, 178, 255),
-    (213, 94, 0, 255),
-    (204, 121, 167, 255),
-    (255, 255, 255, 255),
-)
+_PALETTE = map(bytes.fromhex, ["e69f00", "56b4e9", "009e73", "f0e442", "0072b2", "d55e00", "cc79a7", "ffffff"])
+PALETTE = tuple((red, green, blue, 255) for red, green, blue in _PALETTE)
 """Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and
 white."""
 

@@ -146,7 +146,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return PointTractions(normal, np.where(touching[..., None], trial, 0.0))
 
     def _places(self, x: Array) -> Array:
-        """Places (x, y) of wall points relative to the object at the last state, (n_edges, n_points, n_angles, 2)."""
+        """Wall points (x, y) at ``x`` relative to the object's last place, (n_edges, n_points, n_angles, 2)."""
         along = self._plate.at(self.here.height).along if isinstance(self._plate, SlidObject) else 0.0
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 

@@ -51,18 +51,12 @@ _MEETS_RING = Limitation(
     False,
 )
 
-SHALLOW = 0.2
-"""Range in R0 below which the table may exceed `TABULATION`: the sensitivities of 300 random domes are up to 0.36 % off
-the solid's over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (`tests/mechanics/atlas/test_short_ranges.py`)."""
-
-_LEAST_DEPTH = 0.1
-"""Least depth in R0 that the atlas answers for: there it is 1.2 % off at most."""
+SHALLOW, _LEAST_DEPTH = 0.2, 0.1
+"""Range in R0 below which the table may exceed `TABULATION`, and least depth of a press; sensitivities of 300 random
+domes are up to 0.36 % off over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (tests/mechanics/atlas/test_short_ranges.py)."""
 
 _TOO_SHALLOW = Limitation(
-    f"the range ends within {SHALLOW:g} R0 of first contact, where the table is up to 1.2% off over 0.1 R0, 25% over "
-    "0.01 R0",
-    False,
-    beyond_error=True,
+    f"the range ends within {SHALLOW:g} R0 of first contact, where the table is up to 25% off", False, beyond_error=True
 )
 
 _LIMITATIONS = {
@@ -80,9 +74,8 @@ class AtlasTables(SensorModel):
 
     def covers(self, sensor: Sensor) -> str | None:
         """Reason why a sensor lies outside the box of the atlas or is pressed too little for its tables; else None."""
-        if sensor.protocol.depth < _LEAST_DEPTH * sensor.dome.inner_radius:
-            return f"the depth of {sensor.protocol.depth:.3g} mm is less than {_LEAST_DEPTH:g} of the inner radius"
-        return outside_atlas(sensor)
+        shallow = sensor.protocol.depth < _LEAST_DEPTH * sensor.dome.inner_radius
+        return f"the depth is less than {_LEAST_DEPTH:g} of the inner radius" if shallow else outside_atlas(sensor)
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers from the tables; sensors with the same number of steps are computed together."""

@@ -220,8 +220,8 @@ class LinearContact:
         )
 
     def rows(self, begin: int) -> Array:
-        """Rates of the tractions, normal first, of the points of the edges from ``begin`` on, by the unknowns of these
-        edges: (2 n, n_edges, 2 n_nodes); each point depends only on its own edge."""
+        """Derivatives of the tractions at the n points of the edges from ``begin`` on, normal first, by the unknowns of
+        each edge: (2 n, n_edges, 2 n_nodes); 0 but for a point's own edge."""
         contact, slope, secant = self.solid.contact, self.touch.slope[begin:], self.points.secant[begin:]
         n_edges, n_points = slope.shape
         out = np.zeros((2, n_edges, n_points, n_edges, 2 * contact.shape.shape[1]))

@@ -291,7 +291,7 @@ def relaxations(groups: Groups) -> Plot | None:
 
 
 def _relaxation(curve: MeasuredCurve, look: PlotLine) -> list[PlotLine]:
-    """Force and rise of a run's hold, averaged over equal steps of log time; [] without a hold past `FIRST`."""
+    """Mean force and rise in a hold over equal steps of log time, % of the first; [] if none is past `FIRST`."""
     if curve.relaxation is None:
         return []
     time, *channels = curve.relaxation

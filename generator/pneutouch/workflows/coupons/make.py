@@ -1,6 +1,6 @@
 """Writing of a set of coupons: STL, 3MF, print-and-measure sheet, results file to fill in, and manifest.
 
-Coupons lie on a printer's tray side by side in rows, never turned, because a gauge's x and y are the machine's."""
+Coupons lie on a printer's tray side by side in rows, never turned: x and y of `GAUGE` are the machine's."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -149,12 +149,12 @@ def _check_size(path: Path) -> None:
         raise oversized(path, size, MOST_BYTES, "dataset")
 
 
-def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, Any]:
+def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, np.ndarray]:
     """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
     return {v.name: np.full(count, "", object) if v.text else np.full(count, np.nan) for v in variables}
 
 
-def _fill(columns: dict[str, Any], row: int, values: dict[str, Any]) -> None:
+def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
     for name, value in values.items():
         if value is not None and name in columns:
             columns[name][row] = sys.intern(value) if isinstance(value, str) else value
