@@ -274,8 +274,8 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     if abs(off_kPa) <= near_kPa:
         return None
     problem = (
-        f"column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
-        f"driving_pressure_kPa = {stated_kPa:g}"
+        f"column {columns.pressure.name}: {read_kPa:.3g} kPa before contact, where "
+        f"driving_pressure_kPa = {stated_kPa:g} is stated"
     )
     # No state reads below 0: that is a zero, whatever its size.
     if abs(off_kPa) <= DRIVING_FAR * near_kPa or read_kPa < 0.0:

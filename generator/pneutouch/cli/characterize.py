@@ -22,7 +22,7 @@ from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
 from pneutouch.cli.terminal import bar, notify, report_next, set_words
 from pneutouch.spec.campaign import Campaign, RunKind
-from pneutouch.wording import SIMULATED, listed
+from pneutouch.wording import SIMULATED, counted, listed
 
 if TYPE_CHECKING:
     from pneutouch.results.measured import MeasuredCampaign, MeasuredGroup, MeasuredRun
@@ -175,7 +175,7 @@ def _warnings(runs: "Sequence[MeasuredRun]") -> list[str]:
     left = sum(not warning.used for warning in every)
     if not every:
         return []
-    words = f"{left} doubtful parts of the records left out, {len(every) - left} noted and used"
+    words = f"{counted(left, 'doubtful part')} of the records left out, {len(every) - left} noted and used"
     return [f"\n{words}; see figures.json and evidence/"]
 
 

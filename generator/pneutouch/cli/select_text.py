@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.cli.terminal import table_text
 from pneutouch.selection import Candidate
 from pneutouch.units import KPA
-from pneutouch.wording import tenths_below
+from pneutouch.wording import counted, tenths_below
 from pneutouch.workflows.select.document import (
     Typed,
     change_lines,
@@ -129,7 +129,9 @@ def processes_lines(selection: ProcessSelection) -> list[str]:
         solid = run.answer.designs[0].contact is not None or run.confirmed[0].within
         others = len({choice.resin.name for choice in run.answer.designs}) - 1
         confirmed = "confirmed by the solid" if solid else "the solid is outside its interval"
-        lines.append(f"{process}: {run.base.printer.title}, {confirmed}; {others} other resins meet the target")
+        lines.append(
+            f"{process}: {run.base.printer.title}, {confirmed}; meeting the target: {counted(others, 'other resin')}"
+        )
     for process, run in selection.runs.items():
         if not run.answer.designs:
             nearest = run.answer.nearest

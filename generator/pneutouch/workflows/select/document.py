@@ -32,7 +32,7 @@ from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA, ML
-from pneutouch.wording import tenths_below
+from pneutouch.wording import counted, tenths_below
 from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
@@ -211,7 +211,7 @@ def headline(selection: SelectionRun) -> str:
     """Line on the number of designs found, or that there is none."""
     answer = selection.answer
     if answer.designs:
-        return f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
+        return f"{counted(len(answer.designs), 'design')} of {answer.candidates} candidates, on {selection.base.where}"
     if selection.rejected:
         return "no design that meets the target passes the check"
     return "no design meets the target"
