@@ -129,9 +129,8 @@ def processes_lines(selection: ProcessSelection) -> list[str]:
         solid = run.answer.designs[0].contact is not None or run.confirmed[0].within
         others = len({choice.resin.name for choice in run.answer.designs}) - 1
         confirmed = "confirmed by the solid" if solid else "the solid is outside its interval"
-        lines.append(
-            f"{process}: {run.base.printer.title}, {confirmed}; meeting the target: {counted(others, 'other resin')}"
-        )
+        also = f"{counted(others, 'other resin')} meet{'s' if others == 1 else ''} the target"
+        lines.append(f"{process}: {run.base.printer.title}, {confirmed}; {also}")
     for process, run in selection.runs.items():
         if not run.answer.designs:
             nearest = run.answer.nearest
