@@ -67,7 +67,7 @@ class PageCurves:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictedDesign:
-    """The prediction as ``predict --json`` prints it, None outside the atlas, and lines to draw."""
+    """The prediction as ``predict`` has it in JSON, None outside the atlas, and lines to draw."""
 
     prediction: Mapping[str, Any] | None
     curves: PageCurves | None

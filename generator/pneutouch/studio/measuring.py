@@ -90,7 +90,7 @@ class FittableSensor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CharacterizedCampaign(CommandWords):
-    """Figures of a campaign, as ``characterize --json`` prints them without the folder, and for the page."""
+    """Figures of a campaign, as ``characterize`` has them in JSON, without the folder, and for the page."""
 
     document: MeasuredCampaign
     title: str
@@ -109,7 +109,7 @@ class CharacterizedCampaign(CommandWords):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibratedSensor(CommandWords):
-    """A calibration as ``calibrate --json`` prints it; ``opens``: the calibrated design, if it was saved."""
+    """A calibration as ``calibrate`` has it in JSON; ``opens``: the calibrated design, if it was saved."""
 
     document: OutcomeRecord
     chart: str

@@ -142,7 +142,7 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
         "the datasheet; the page has a 3D view that can be rotated, and can be read on a phone and printed",
     ),
     (("NAME.3mf",), "both bodies as one assembly, with material names and colours"),
-    (("stl/*.stl",), "one file a body, all in one frame, for tray software that reads STL"),
+    (("stl/*.stl",), "one file for each body, all in one frame, for tray software that reads STL"),
     (("NAME.step", "NAME.glb"), "the exact solids for CAD; the meshes for viewers"),
     (
         ("NAME-pressed.png", "NAME-pressed.glb"),
