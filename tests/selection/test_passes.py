@@ -151,7 +151,7 @@ def test_a_plate_wider_than_the_contact_goes_with_a_large_dome():
     wanted = {"sensitivity_kPa_per_N": 0.5, "driving_pressure_kPa": 10.0}
     given = {"inner_radius_mm": 20.0, "materials": ["TangoPlus"]}
     selection = answer(wanted, given=given)
-    assert parse_changes(selection.assignments(selection.answer.designs[0]))["indentation.plate_diameter_mm"] == 50
+    assert parse_changes(selection.assignments(selection.answer.designs[0]))["indentation.plate_diameter_mm"] == 64
     stated = answer(wanted, given=given, setting={"assignments": ["indentation.plate_diameter_mm=30"]})
     assert not stated.answer.designs
 
