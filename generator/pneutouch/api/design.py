@@ -107,7 +107,7 @@ class Design(show.Shown):
             self.file = self.source.changed({})
             if "material" in fields:
                 membrane_material_of(self.file, WHERE, Library.default())
-            for field in {keywords(DesignFile).get(one, "") for one in fields} - {"", "membrane.material"}:
+            for field in (keywords(DesignFile).get(one, "") for one in fields if one != "material"):
                 table, _, key = field.partition(".")
                 model = table_of(DesignFile, table) if key else None
                 kind, chosen = (

@@ -93,11 +93,12 @@ def read_blocks(
         _check_apart(blocks, columns, keys)
         if "position" in keys:
             _check_alive(blocks, names)
-        warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
-    top_kPa = rig.pressure_range_kPa
-    warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top_kPa, KPA, "kPa")
-    clipped = {one.why.split(" ", 1)[0] for one in warnings if one.kind == "clipped"}
-    warnings += _at_end(blocks, [key for key in keys if key not in clipped]) if pressed else []
+            warnings += _at_end(blocks, "position")
+    tops = {"force": (rig.force_range_N, 1.0, "N"), "pressure": (rig.pressure_range_kPa, KPA, "kPa")}
+    for key in (key for key in keys if key in tops):
+        found = _clipped(blocks, key, getattr(blocks, key), getattr(blocks, f"{key}_extreme"), *tops[key])
+        clipped = any(one.kind == "clipped" for one in found)
+        warnings += found if clipped or not pressed else [*found, *_at_end(blocks, key)]
     return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
@@ -133,32 +134,28 @@ def scaled(
     return converted
 
 
-def _at_end(blocks: Blocks, keys: Sequence[str]) -> list[SuspectInterval]:
-    """Questions on channels that stay at their greatest value, noise aside, while another goes on: at their end."""
-    found = []
-    others = {"force": "position", "pressure": "position", "position": "force"}
-    others = others if np.ptp(blocks.position) > 0 else {"force": "pressure", "pressure": "force"}
-    for key, other in ((key, others[key]) for key in keys if key in others):
-        values, follows = getattr(blocks, key), getattr(blocks, other)
-        noise = float(np.median(np.abs(np.diff(values, 2)))) if values.size > 2 else 0.0
-        within = max(4.0 * noise, _STILL * float(np.ptp(values)))
-        for start, end in _runs(values >= values.max() - within):
-            went = float(follows[start:end].max() - follows[start])
-            earlier = np.flatnonzero(follows[:start] <= follows[start] - went)
-            # A position that stays is a hold, in which the force relaxes: at its end alone the force goes on to rise.
-            if key == "position":
-                ended = went > _RISEN * float(np.ptp(follows)) > 0.0
-            else:
-                ended = False
-                if earlier.size and went > 0.0:
-                    slope = (values[start] - values[earlier[-1]]) / (follows[start] - follows[earlier[-1]])
-                    ended = bool(slope * went > max(3.0 * within, _GROWN * float(np.ptp(values))))
-            if ended:
-                why = f"the {key} stays at its greatest value while the {other} goes on: is that the end of its range?"
-                begin, finish = float(blocks.time[start]), float(blocks.time[end - 1])
-                found.append(SuspectInterval(begin, finish, why, True, "asked"))
-                break
-    return found
+def _at_end(blocks: Blocks, key: str) -> list[SuspectInterval]:
+    """Question on a channel that stays at its greatest value, noise aside, while another goes on; none if none does."""
+    moved = bool(np.ptp(blocks.position) > 0)
+    other = "position" if moved and key != "position" else "pressure" if not moved and key == "force" else "force"
+    values, follows = getattr(blocks, key), getattr(blocks, other)
+    noise = float(np.median(np.abs(np.diff(values, 2)))) if values.size > 2 else 0.0
+    within = max(4.0 * noise, _STILL * float(np.ptp(values)))
+    before = 0
+    for start, end in _runs(values >= values.max() - within):
+        went = float(follows[start:end].max() - follows[start])
+        earlier = before + np.flatnonzero(follows[before:start] <= follows[start] - went)
+        before, ended = end, False
+        # A position that stays is a hold, in which the force relaxes: at its end alone the force goes on to rise.
+        if key == "position":
+            ended = went > _RISEN * float(np.ptp(follows)) > 0.0
+        elif earlier.size and went > 0.0:
+            slope = (values[start] - values[earlier[-1]]) / (follows[start] - follows[earlier[-1]])
+            ended = bool(slope * went > max(3.0 * within, _GROWN * float(np.ptp(values))))
+        if ended:
+            why = f"the {key} stays at its greatest value while the {other} goes on: is that the end of its range?"
+            return [SuspectInterval(float(blocks.time[start]), float(blocks.time[end - 1]), why, True, "asked")]
+    return []
 
 
 def _check_apart(blocks: Blocks, columns: ColumnMap, keys: Sequence[str]) -> None:

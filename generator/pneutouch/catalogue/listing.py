@@ -14,8 +14,8 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
 from pneutouch.spec.values import name_of
 
-_KINDS = ("designs", "specimens", "examples", "calibrations", "materials", "mixing", "printers", "gauges", "parts")
-_GROUPS = {kind: [kind] for kind in _KINDS} | {"examples": [], "parts": ["ports", "seats", "mounts", "tubes"]}
+_LISTED = ("designs", "specimens", "examples", "calibrations", "materials", "mixing", "printers", "gauges", "parts")
+_GROUPS = {kind: [kind] for kind in _LISTED} | {"examples": [], "parts": ["ports", "seats", "mounts", "tubes"]}
 
 
 _NAMED_BY_FILE = ("designs", "specimens", "calibrations")

@@ -24,8 +24,9 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
     across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
     target = tradeoff.window_kPa_per_N or tradeoff.force
     if short and not target and np.median(np.concatenate(short)) < _ALIKE:
-        across += f"\nat the ends of a bar: greatest force range; in between\n{tradeoff.gauge_kPa:g} kPa, what is left"
-        return replace(_reached(tradeoff, short), x=f"{across} of the gauge, over the sensitivity")
+        across += "\nnumbers: greatest force range, at the ends of each bar;"
+        across += f"\nin between {tradeoff.gauge_kPa:g} kPa of the gauge / sensitivity"
+        return replace(_reached(tradeoff, short), x=across)
     chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
     xlim, ylim = _limits(tradeoff)
     # The cavity pressure reaches the end of the pressure sensor's range: no design is beyond.
@@ -68,7 +69,8 @@ def _reached(tradeoff: TradeOff, short: list[Array]) -> Panel:
     for k, spot in enumerate(spot for spot in tradeoff.spots if spot.resin in titles):
         at = spot.figures.sensitivity, float(titles.index(spot.resin))
         lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
-        best = f"; the best here {tradeoff.gauge_kPa / at[0]:.3g} N"
+        front = tradeoff.known[order[int(at[1])]]
+        best = f"; the best here {np.interp(at[0], front.sensitivity, front.force):.3g} N"
         notes.append(Note(spot.label + best, at, (0.0, 1.0), bold=k == 0))
     if max(missing.max() for missing in short) >= _ALIKE:
         lines.append(PlotLine(label="thin: less, another limit ends the range", width=0.7))

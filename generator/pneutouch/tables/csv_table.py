@@ -282,8 +282,7 @@ def safe_cell(value: object) -> object:
 
 def csv_bytes(head: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
     """Table as a CSV file in UTF-8: a header row and ``rows``, every cell made safe by `safe_cell`."""
-    buffer = io.BytesIO()
-    text = io.TextIOWrapper(buffer, "utf-8", newline="")
+    text = io.TextIOWrapper(buffer := io.BytesIO(), "utf-8", newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(safe_cell(name) for name in head)
     writer.writerows([safe_cell(cell) for cell in row] for row in rows)

@@ -9,11 +9,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from pneutouch.evaluation.uncertainty import spread
+from pneutouch.mechanics.atlas import respond as respond_module
 from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, SENSITIVITY, neighbourhood
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty.propagate import STEP, derivatives
+from pneutouch.mechanics.uncertainty.propagate import STEP, derivatives, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials
@@ -97,3 +99,20 @@ def test_outside_the_atlas_there_is_no_uncertainty(library):
     sensor = material_sensor(materials(library)["TangoPlus"]).replace(wall_thickness=4.0)
     found = budget_for(library, batch_of(sensor, [0.0]), "TangoPlus", False)
     assert np.isnan(found.standard).all()
+
+
+def test_what_the_ends_of_ranges_leave_unlocated_moves_no_interval(evaluated, monkeypatch):
+    """`stiff-dome`, most of whose ranges end at the gauge: 2e-5 of travel would leave 1 % in an interval."""
+    evaluation = evaluated("stiff-dome", model="atlas")
+    scene, pressures = evaluation.scene, [state.driving_pressure for state in evaluation.prediction.states]
+    known = list(evaluation.resins.values())
+    batch, sources, _ = spread(
+        evaluation.sensor, pressures, scene.membrane_material, known, scene.printer, evaluation.prediction.model
+    )
+    found = propagate(batch, sources).expanded
+    monkeypatch.setattr(respond_module, "_WITHIN", 1e-13)
+    monkeypatch.setattr(respond_module, "_ROUNDS", 60)
+    exact = propagate(batch, sources).expanded
+    wide = exact > 1e-3
+    assert wide.sum() > 8
+    np.testing.assert_allclose(found[wide], exact[wide], rtol=1e-4)

@@ -267,61 +267,6 @@ def test_a_force_at_the_end_of_its_channel_is_a_question_in_noise_and_refused_wi
         read(tmp_path, Recording(spoil=lambda s: clipped(s, 0.0)))
 
 
-@pytest.mark.parametrize("name", ["triangular", "sine", "steps", "hold", "stairs with return"])
-@pytest.mark.parametrize(("row", "key", "end", "noise"), [(2, "force", 20.0, 0.02), (3, "pressure", 45.0, 0.03)])
-def test_a_channel_at_its_end_is_a_question_whatever_the_noise_on_it(name, row, key, end, noise, tmp_path):
-    def clipped(samples):
-        samples[row] = np.minimum(samples[row], end)
-        samples[row] += noise * np.random.default_rng(3).normal(size=samples.shape[1])
-        return samples
-
-    measured = read(tmp_path, replace(READ[name], spoil=clipped))
-    assert asked(measured, key, AT_END)
-
-
-def test_a_stage_at_its_end_is_a_question(tmp_path):
-    """The position stays while the force goes on to rise: neither a hold nor a relaxation."""
-
-    def stopped(samples):
-        samples[1] = np.minimum(samples[1], samples[1].min() + 0.6 * np.ptp(samples[1]))
-        return samples
-
-    assert asked(read(tmp_path, Recording(spoil=stopped)), "position", AT_END)
-
-
-def test_a_force_of_coarse_steps_gives_figures(tmp_path):
-    """A loading may pass from nothing to the fitted force within a block."""
-
-    def coarse(samples):
-        samples[2] = 0.5 * np.round(samples[2] / 0.5)
-        return samples
-
-    recording = replace(READ["stairs with return"], spoil=coarse)
-    value = true_figures(READ["stairs with return"].at())["sensitivity_kPa_per_N"]
-    assert figures(read(tmp_path, recording))["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.03)
-
-
-@pytest.mark.parametrize(("decimals", "noise"), [(2, 0.0), (3, 0.0), (5, 1e-3)])
-def test_a_column_computed_from_another_is_refused_though_rounded(decimals, noise, tmp_path):
-    def copied(samples):
-        other = 2.5 * samples[2] + noise * np.random.default_rng(2).normal(size=samples.shape[1])
-        samples[3] = np.round(other, decimals)
-        return samples
-
-    with pytest.raises(InputError, match=r"2\.5"):
-        read(tmp_path, Recording(spoil=copied))
-
-
-def test_hectopascals_under_a_heading_of_kilopascals_are_refused_with_the_unit(tmp_path):
-    def absolute(samples):
-        samples[3] = 10.0 * (samples[3] + 101.325)
-        return samples
-
-    with pytest.raises(InputError) as refused:
-        read(tmp_path, Recording(spoil=absolute))
-    assert "hPa_abs" in refused.value.remedy or "mbar_abs" in refused.value.remedy
-
-
 def test_a_tare_is_subtracted_with_a_question(tmp_path):
     measured = read(tmp_path, Recording(tare=12.0))
     assert asked(measured, "12 N before contact")

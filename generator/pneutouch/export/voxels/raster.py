@@ -153,8 +153,8 @@ def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -
 BACKGROUND = (0, 0, 0, 255)
 """Opaque black: the background of the utility's own files (BackGroundMaterialRGBA)."""
 
-_PALETTE = map(bytes.fromhex, ["e69f00", "56b4e9", "009e73", "f0e442", "0072b2", "d55e00", "cc79a7", "ffffff"])
-PALETTE = tuple((red, green, blue, 255) for red, green, blue in _PALETTE)
+_HEX = (0xE69F00, 0x56B4E9, 0x009E73, 0xF0E442, 0x0072B2, 0xD55E00, 0xCC79A7, 0xFFFFFF)
+PALETTE = tuple((colour >> 16, colour >> 8 & 255, colour & 255, 255) for colour in _HEX)
 """Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and
 white."""
 

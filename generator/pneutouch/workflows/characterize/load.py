@@ -376,7 +376,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gat
     column = gathered.sources[curve.run.file].columns.pressure
     units, declared = UNITS["pressure"], column.unit.removesuffix(ABSOLUTE)
     # In a smaller unit too: hectopascals under a heading of kilopascals are no driving pressure.
-    smaller = [unit for unit in units if units[unit] < units[declared] and not unit.endswith(ABSOLUTE)]
+    smaller = [unit for unit in units if units[unit] < units[declared] and f"{unit}{ABSOLUTE}" in units]
     for unit in () if near else (declared, *smaller):
         if not any(looks_absolute(read_kPa * units[unit] / units[declared] - p) for p in (0.0, *stated_kPa)):
             continue

@@ -63,9 +63,9 @@ def dataset(study: SweepStudy, records: dict[int, bytes]) -> xarray.Dataset:
         _fill(of_points, i, record["values"])
         for pressure_kPa, state in zip(requested, record["states"], strict=True):
             _fill(of_states, i * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
-    content: dict[str, Any] = {v.name: _variable(v, of_points[v.name], shape, dims) for v in POINT}
-    whole_shape, whole_dims = (*shape, len(pressures_kPa)), (*dims, PRESSURE)
-    content = {v.name: _variable(v, of_states[v.name], whole_shape, whole_dims) for v in STATE} | content
+    every, whole_dims = (*shape, len(pressures_kPa)), (*dims, PRESSURE)
+    content: dict[str, Any] = {v.name: _variable(v, of_states[v.name], every, whole_dims) for v in STATE}
+    content |= {v.name: _variable(v, of_points[v.name], shape, dims) for v in POINT}
     coordinates = {
         PRESSURE: (
             PRESSURE,

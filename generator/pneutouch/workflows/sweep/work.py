@@ -196,6 +196,10 @@ CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
 little. The atlas answers them together."""
 
 
+Record = dict[str, Any]
+"""A finished point as plain data: ``point`` (its number), ``states`` by ascending driving pressure, ``values``."""
+
+
 def packed(record: Record) -> bytes:
     """A record as it waits in memory for the dataset: compressed, in a tenth of the space."""
     return zlib.compress(json.dumps(record).encode(), 1)
@@ -204,10 +208,6 @@ def packed(record: Record) -> bytes:
 def unpacked(content: bytes) -> Record:
     """The record that was packed."""
     return cast("Record", json.loads(zlib.decompress(content)))
-
-
-Record = dict[str, Any]
-"""A finished point as plain data: ``point`` (its number), ``states`` by ascending driving pressure, ``values``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch import __version__
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.output.files import digest
-from pneutouch.stopping import temporary_folder
+from pneutouch.stopping import temporary_folder, uninterrupted
 from pneutouch.workflows.sweep.work import Record, SweepChunk, SweepStudy, compute, unpack
 
 if TYPE_CHECKING:
@@ -185,7 +185,8 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
         try:
             while True:
                 while len(running) < _QUEUED_EACH * workers and (chunk := next(waiting, None)) is not None:
-                    with _deaf():
+                    # A stop that met a worker half started would leave it without its orders, and a traceback.
+                    with uninterrupted(), _deaf():
                         running.add(pool.submit(compute, chunk, folder))
                 if not running:
                     others.update(multiprocessing.active_children())
