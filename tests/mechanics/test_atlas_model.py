@@ -23,6 +23,7 @@ from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Ri
 from pneutouch.results.record import plain as data
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA, ML
+from tests.mechanics.test_contact import PAPER
 
 SENSOR = Sensor(
     Dome(Hemisphere(9.25, 1.5)),
@@ -211,6 +212,13 @@ def test_a_shallow_press_is_left_to_the_solid(depth):
             predict("", sensor, [7.2388 * KPA], model="atlas")
     else:
         assert predict("", sensor, [7.2388 * KPA], model="atlas").error_estimate.model_choice is not None
+
+
+def test_a_range_of_no_length_has_no_figures():
+    """The gauge's range ends below the driving pressure: the press ends before it begins."""
+    sensor = PAPER.replace(gauge_limit=4 * KPA)
+    (state,) = predict("", sensor, [5 * KPA], model="atlas").states
+    assert state.range_end == 0.0 and state.figures is None
 
 
 @pytest.mark.slow

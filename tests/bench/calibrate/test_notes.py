@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import notes
-from pneutouch.bench.calibrate.notes import _MOVED, _shared, amount
+from pneutouch.bench.calibrate.notes import _MOVED, _left_out, _shared, amount
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, FRICTION_PRIOR, MODULUS, OFFSET, WALL
 from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.wording import listed
@@ -45,3 +45,17 @@ def test_a_gain_is_stated_to_move_what_it_moves_by_a_part_of_its_interval(monkey
     monkeypatch.setattr(notes, "gain_shifts", lambda fit: shifts)
     (said,) = _shared(fit)
     assert said.startswith("a force reading 1 % too high in all runs moves ") and said.count("+") == 1
+
+
+@pytest.mark.parametrize("other", [False, True])
+def test_a_limit_point_of_the_wall_that_stands_for_another_is_named_as_such(other):
+    injection = SimpleNamespace(label="injection 1")
+    fit = SimpleNamespace(
+        observations=SimpleNamespace(curves=(), injections=(injection,), rig=None),
+        left_out=(),
+        points=SimpleNamespace(travel=()),
+        injections_left_out=(np.array([False, True, True]),),
+        contact=SimpleNamespace(other_wall=other),
+    )
+    (note,) = _left_out(fit)
+    assert note.startswith("injection 1: 2") and ("neo-Hookean" in note) == other
