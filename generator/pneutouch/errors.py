@@ -193,11 +193,10 @@ def _number(value: numbers.Real) -> str:
 
 def _escaped(text: str, keep: str = "") -> str:
     """The text with control characters, which could move the cursor, as TOML escapes; those in ``keep`` stay."""
-    return "".join(c if c.isprintable() or c in keep else _code(c) for c in text)
-
-
-def _code(character: str) -> str:
-    return f"\\u{ord(character):04X}" if ord(character) < 0x10000 else f"\\U{ord(character):08X}"
+    return "".join(
+        c if c.isprintable() or c in keep else f"\\u{ord(c):04X}" if ord(c) < 0x10000 else f"\\U{ord(c):08X}"
+        for c in text
+    )
 
 
 def _cut(text: str) -> str:

@@ -10,7 +10,7 @@ from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import Limits
-from pneutouch.mechanics.rating import Rating, rated_pressure, rating
+from pneutouch.mechanics.rating import Rating, rated_pressure, ratings
 from pneutouch.mechanics.uncertainty.document import budget
 from pneutouch.mechanics.uncertainty.propagate import LIMIT
 from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
@@ -30,7 +30,7 @@ def rated(
         modulus = modulus.model_copy(update={"spread": spread * modulus.nominal})
         material = material.model_copy(update={"shear_modulus_MPa": modulus})
     limits = limits or predict("", sensor, [0.0], model="atlas").limits
-    return rating(limits, sensor, material, library.load("printers", "objet260-connex"))
+    return ratings([limits], [sensor], material, library.load("printers", "objet260-connex"))[0]
 
 
 def test_the_paper_s_sensor_is_rated_below_the_lower_end_of_its_limit_pressure(library):
@@ -146,8 +146,8 @@ def test_a_calibration_raises_it_by_its_own_covariance(library, correlation):
     material, printer = materials(library)["TangoPlus"], library.load("printers", "objet260-connex")
     sensor, known = material_sensor(material), calibrated(0.08, 0.06, correlation)
     limits = predict("", sensor, [0.0], model="atlas").limits
-    found = rating(limits, sensor, material, printer, known)
-    assert found.pressure > 1.2 * rating(limits, sensor, material, printer).pressure
+    found = ratings([limits], [sensor], material, printer, known)[0]
+    assert found.pressure > 1.2 * ratings([limits], [sensor], material, printer)[0].pressure
     spread = np.sqrt(0.08**2 + 0.06**2 + 2 * correlation * 0.08 * 0.06)
     # The wall's slope is 1.04 and the radius adds 0.3 %.
     assert np.log(found.limit.nominal / found.limit.low) == pytest.approx(2 * spread, rel=0.06, abs=0.01)

@@ -6,7 +6,7 @@ from typing import Any
 
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.rating import rating
+from pneutouch.mechanics.rating import ratings
 from pneutouch.printability import Finding, PrintSubject, SensorContext, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
@@ -33,5 +33,5 @@ def dome(
     sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     part = item(cup(radius + wall, wall), "membrane", resin)
-    judged = rating(prediction.limits, sensor, material(resin), part.printer)
+    judged = ratings([prediction.limits], [sensor], material(resin), part.printer)[0]
     return PrintSubject((part,)), SensorContext(prediction, sensor, judged, calibrated=calibrated)

@@ -224,7 +224,11 @@ def sweep(
 
     with named_by_keyword(), temporary_folder() as folder:
         values = changes(DesignFile, fields)
-        grid = {key: value for key, value in values.items() if isinstance(value, list) or _is_range(value)}
+        grid = {
+            key: value
+            for key, value in values.items()
+            if isinstance(value, list) or (isinstance(value, Mapping) and "count" in value)
+        }
         fixed = {key: value for key, value in values.items() if key not in grid}
         if not grid:
             raise InputError("no field has several values", remedy="give a list, such as wall_thickness_mm=[1, 1.2]")
@@ -232,10 +236,6 @@ def sweep(
         path = folder / "sweep.nc" if out is None else Path(out)
         run(plan, path, ComputeResources(workers), fresh=fresh)
         return xarray.load_dataset(path, engine="scipy")
-
-
-def _is_range(value: Any) -> bool:
-    return isinstance(value, Mapping) and "count" in value
 
 
 def map_sweep(dataset: xarray.Dataset | str | Path, charts: str | Path) -> list[Path]:

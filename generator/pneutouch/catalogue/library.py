@@ -52,12 +52,7 @@ def user_folder() -> Path:
             return Path(named).expanduser()
         except RuntimeError:
             raise InputError("no such user", key=HOME, value=named, remedy="give the path of a folder") from None
-    return Path(IN_CHECKOUT) if _is_checkout(Path()) else Path()
-
-
-def _is_checkout(folder: Path) -> bool:
-    """True if a folder is a checkout of the program: this one, or another one if the program is installed."""
-    return (folder / "generator/pneutouch/catalogue" / Path(__file__).name).is_file()
+    return Path(IN_CHECKOUT) if Path("generator/pneutouch/catalogue", Path(__file__).name).is_file() else Path()
 
 
 FOLDER = "docs/examples"

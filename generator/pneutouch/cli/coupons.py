@@ -118,7 +118,13 @@ def _options(given: dict[str, Any]) -> CouponOptions:
 def results_text(report: CouponReport) -> str:
     """The measured figures, the changes of each profile, the files written, and notes."""
     figures = [
-        [f.about, f.name, f"{f.value:.4g}", "" if f.spread is None else f"± {f.spread:.2g}", _count(f.count)]
+        [
+            f.about,
+            f.name,
+            f"{f.value:.4g}",
+            "" if f.spread is None else f"± {f.spread:.2g}",
+            "" if f.count is None else f"n = {f.count}",
+        ]
         for f in report.figures
     ]
     changes = [[change.key, _shown(change.before), "->", _shown(change.after)] for change in report.changes]
@@ -129,10 +135,6 @@ def results_text(report: CouponReport) -> str:
         "\n".join(f"note: {note}" for note in report.notes),
     ]
     return "\n\n".join(part for part in parts if part)
-
-
-def _count(count: int | None) -> str:
-    return "" if count is None else f"n = {count}"
 
 
 def _shown(quantity: Mapping[str, Any] | None) -> str:

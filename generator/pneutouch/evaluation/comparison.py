@@ -197,17 +197,16 @@ def shared_pressures_kPa(sensors: Sequence[ComparedSensor]) -> list[float]:
         s.driving_pressure_kPa for s in first.states if all(other.state(s.driving_pressure_kPa) for other in others)
     ]
     if not shared_kPa:
-        listed = "; ".join(f"{sensor.label}: {_listed(sensor)}" for sensor in sensors)
+        listed = "; ".join(
+            f"{sensor.label}: {', '.join(f'{s.driving_pressure_kPa:g}' for s in sensor.states)} kPa"
+            for sensor in sensors
+        )
         raise InputError(
             f"no driving pressure is common to all ({listed})",
             remedy="give the designs the driving pressures of the others, such as pneumatics.driving_pressures_kPa="
             f"[{', '.join(f'{s.driving_pressure_kPa:g}' for s in others[-1].states)}]",
         )
     return shared_kPa
-
-
-def _listed(sensor: ComparedSensor) -> str:
-    return ", ".join(f"{state.driving_pressure_kPa:g}" for state in sensor.states) + " kPa"
 
 
 def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, tuple[Any, ...]]:

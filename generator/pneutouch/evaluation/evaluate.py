@@ -140,12 +140,11 @@ class Evaluation:
     @cached_property
     def rating(self) -> Rating:
         """The rated pressure, by the limits of the prediction's model."""
-        from pneutouch.mechanics.rating import rating
+        from pneutouch.mechanics.rating import ratings
 
-        error = abs(self.prediction.error_estimate.limit_pressure_relative)
-        scene = self.scene
-        known = (scene.membrane_material, scene.printer, scene.calibration)
-        return rating(self.prediction.limits, self.sensor, *known, numerical=error)
+        error, scene = abs(self.prediction.error_estimate.limit_pressure_relative), self.scene
+        known = scene.membrane_material, scene.printer, scene.calibration, error
+        return ratings([self.prediction.limits], [self.sensor], *known)[0]
 
     @cached_property
     def curves(self) -> tuple[CurveOutcome, ...]:

@@ -212,14 +212,9 @@ def _zero(evaluation: Evaluation, grid: ReaderGrid) -> ZeroDrift:
         drift_rate_kPa_per_s=_one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
         drift_most_kPa=_one(per_kelvin_kPa * CHANGE_K),
         noise_least_kPa=_one(_noise_kPa(evaluation, grid)),
-        noise_most_kPa=_one(_noise_most_kPa(evaluation, grid)),
+        noise_most_kPa=_one(max(NOISES * _noise_kPa(evaluation, grid), UNSTEADY * float(grid.rise.max()) / KPA)),
         filter_s=FILTER_S,
     )
-
-
-def _noise_most_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
-    """Scatter up to which readings without contact are a tare, kPa: beyond it something moves."""
-    return max(NOISES * _noise_kPa(evaluation, grid), UNSTEADY * float(grid.rise.max()) / KPA)
 
 
 def _noise_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:

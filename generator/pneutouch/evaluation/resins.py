@@ -13,7 +13,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.paper_sensor import logarithmic_change
-from pneutouch.mechanics.rating import Rating, rating
+from pneutouch.mechanics.rating import Rating, ratings
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import Changes
@@ -47,7 +47,7 @@ def rating_of(scene: ResolvedDesign, sensor: Sensor) -> Rating:
         central = {"body": None, "offset": 0.0, "tilt": 0.0, "shear": 0.0}
         return rating_of(scene, sensor.replace(**central))
     limits = predict("", sensor, [0.0], model="auto").limits
-    return rating(limits, sensor, scene.membrane_material, scene.printer, scene.calibration)
+    return ratings([limits], [sensor], scene.membrane_material, scene.printer, scene.calibration)[0]
 
 
 def resins_of(

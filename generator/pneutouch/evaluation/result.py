@@ -46,10 +46,10 @@ if TYPE_CHECKING:
 _DIGITS = 6
 """Significant digits: more than the figures have, fewer than differ between processors."""
 
-_MODEL_DIGITS = 12
+MODEL_DIGITS = 12
 """Significant digits of the model's own figures: rounding of the last bits differs between processors."""
 
-_NOTHING = 1e-12
+NOTHING = 1e-12
 """Forces and pressure rises below this (N, kPa) are rounding."""
 
 
@@ -77,7 +77,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
 def _drawn_mL(evaluation: Evaluation) -> float | None:
     """Gas volume of connector, tube and gauge as drawn, mL, if 0 is stated behind a tube; else None."""
     assembly = evaluation.assembly
-    return float(rounded(assembly.drawn_volume / ML, _MODEL_DIGITS)) if assembly.dead_volume_note else None
+    return float(rounded(assembly.drawn_volume / ML, MODEL_DIGITS)) if assembly.dead_volume_note else None
 
 
 def states_as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
@@ -108,7 +108,7 @@ def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRec
 
 def by_model(prediction: SensorPrediction, *, curves: bool = True) -> PredictionRecord:
     """A prediction's record without rating and uncertainty; with ``curves`` False also without inflation and without
-    the curves of central contact, which take the most time."""
+    the curves of central contact, which take the most time, and not rounded."""
     inflation = prediction.inflation if curves else InflationCurve(*[np.empty(0)] * 4)
     record = PredictionRecord(
         design=prediction.design,
@@ -127,7 +127,7 @@ def by_model(prediction: SensorPrediction, *, curves: bool = True) -> Prediction
         states=tuple(_state(state, curves=curves) for state in prediction.states),
         assumptions=prediction.assumptions,
     )
-    return rounded(record, _MODEL_DIGITS, _NOTHING)
+    return rounded(record, MODEL_DIGITS, NOTHING) if curves else record
 
 
 def _state(state: SensorState, *, curves: bool) -> StateRecord:

@@ -6,7 +6,7 @@ from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.predict import predict
 from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction
-from pneutouch.mechanics.rating import Rating, rating
+from pneutouch.mechanics.rating import Rating, ratings
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.spec.material import Material, MixByCurve
 from pneutouch.spec.printer import Printer
@@ -41,7 +41,7 @@ def _outcome(
         return CurveOutcome(by_curve, (), None)
     error = abs(answer.error_estimate.limit_pressure_relative)
     return CurveOutcome(
-        by_curve, answer.states, rating(answer.limits, there, material, printer, numerical=error).pressure
+        by_curve, answer.states, ratings([answer.limits], [there], material, printer, numerical=error)[0].pressure
     )
 
 

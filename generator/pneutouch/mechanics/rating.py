@@ -1,5 +1,6 @@
 """The rated pressure: the greatest driving pressure of a sensor, with the uncertainty of its limits included."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.coverage import outside_fit
-from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.sensor import Sensor
@@ -129,32 +130,34 @@ def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:
     return np.asarray(RATED_SHARE * np.fmin(limit * np.exp(-COVERAGE * spread), gauge))
 
 
-def rating(
-    limits: Limits,
-    sensor: Sensor,
+def ratings(
+    limits: Sequence[Limits],
+    sensors: Sequence[Sensor],
     material: Material,
     printer: Printer,
     calibration: SensorCalibration | None = None,
     numerical: float = LIMIT_ERROR,
-) -> Rating:
-    """Rating of a sensor of ``material`` from ``printer``, from the nominal ``limits`` that a model gives.
+) -> list[Rating]:
+    """Ratings of n sensors of ``material`` from ``printer``, from the nominal ``limits`` that a model gives, in one
+    pass.
 
     All limits but the gauge range are met at pressures proportional to the modulus, so all have the uncertainty of the
     limit pressure. The scatter of the break strain is covered by using the least elongation at break instead.
     ``calibration`` is that of the built sensor, None without one. ``numerical`` is the model's greatest relative error
     of the limit pressure.
     """
-    spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical, calibration)
-    factor = float(np.exp(COVERAGE * spread.standard[0]))
-    intervals = [
-        UncertainLimit(name, value, value, value)
-        if name == "gauge range"
-        else UncertainLimit(name, value, value / factor, value * factor)
-        for name, value in limits.named()
-    ]
-    least = min((value for name, value in limits.named() if name != "gauge range"), default=np.inf)
-    rated, measured = (
-        float(rated_pressure(np.array([least]), relative, limits.gauge)[0])
-        for relative in (spread.standard, spread.measured)
+    spread = limit_spread(
+        SensorBatch.join([batch_of(s, [0.0]) for s in sensors]), material, printer, numerical, calibration
     )
-    return Rating(rated, tuple(sorted(intervals, key=lambda limit: limit.low)), measured, outside_fit(sensor) is None)
+    named = [one.named() for one in limits]
+    least = np.array([min((v for name, v in each if name != "gauge range"), default=np.inf) for each in named])
+    gauge = np.array([one.gauge for one in limits])
+    rated, measured = (rated_pressure(least, some, gauge).tolist() for some in (spread.standard, spread.measured))
+    found = []
+    for k, factor in enumerate(np.exp(COVERAGE * spread.standard).tolist()):
+        # A gauge's range is exact: its own reading sets the driving pressure.
+        factors = [1.0 if name == "gauge range" else factor for name, _ in named[k]]
+        intervals = [UncertainLimit(n, v, v / f, v * f) for (n, v), f in zip(named[k], factors, strict=True)]
+        ordered = tuple(sorted(intervals, key=lambda limit: limit.low))
+        found.append(Rating(rated[k], ordered, measured[k], outside_fit(sensors[k]) is None))
+    return found

@@ -46,7 +46,11 @@ def explained(model: type[BaseModel], detail: Any, where: str | None) -> InputEr
     key = _label(detail["loc"])
     if detail["type"] == "extra_forbidden" and owner is not None:
         kind = "table" if isinstance(detail["input"], dict) else "key"
-        return InputError(f"unknown {kind}.{nearest(path[-1], _keys(owner))}", file=where, key=key)
+        return InputError(
+            f"unknown {kind}.{nearest(path[-1], [f.alias or k for k, f in owner.model_fields.items()])}",
+            file=where,
+            key=key,
+        )
     if detail["type"] == "missing":
         return InputError("missing", file=where, key=key, remedy=_addition(owner, path))
     if detail["type"] == "value_error":
@@ -122,11 +126,6 @@ def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
         return f"give {path[-1]} = {form}: {right}"
     # The help of a field without bounds is a sentence of its own.
     return f"add it: {right}" if right[:1].isupper() else f"give {right}"
-
-
-def _keys(owner: type[BaseModel]) -> list[str]:
-    """Keys of a table as they are written in a file."""
-    return [field.alias or key for key, field in owner.model_fields.items()]
 
 
 def _expected(detail: Any) -> str:

@@ -101,12 +101,12 @@ FilePath = Annotated[Path, BeforeValidator(lambda value: Path(value) if isinstan
 def options_of(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
     """Options of ``model`` among ``values``, by field; None: the default. Raises InputError that names the field."""
     fields = model.model_fields
-    given = {key: value for key, value in values.items() if key in fields and not _is_left_out(fields[key], value)}
+    given = {
+        key: value
+        for key, value in values.items()
+        if key in fields and (value is not None or fields[key].get_default() is PydanticUndefined)
+    }
     return validate(model, given, None)
-
-
-def _is_left_out(field: Any, value: Any) -> bool:
-    return value is None and field.get_default() is not PydanticUndefined
 
 
 def flag_of(model: type[Options], key: str) -> str:

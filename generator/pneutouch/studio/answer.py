@@ -143,7 +143,8 @@ class Answers:
 
     def view(self, question: Question) -> ViewedDesign:
         """The bodies as meshes to look at. Raises InputError that names the field."""
-        return _viewed_design(assemble(load_scene(question.source(self._bases, self._library), {}, self._library)))
+        assembly = assemble(load_scene(question.source(self._bases, self._library), {}, self._library))
+        return ViewedDesign([_mesh(solid.mesh(_TOLERANCE)) for solid in assembly.solids])
 
 
 def full_answer(question: Question, bases: Mapping[str, str], library: Library) -> FullAnswer:
@@ -309,11 +310,6 @@ def _bounds(solid: Solid) -> Array:
         return solid.mesh(_TOLERANCE).bounds
     radius, low, high = solid.base.bounds()
     return np.array([(-radius, -radius, low), (radius, radius, high)])
-
-
-def _viewed_design(assembly: Assembly) -> ViewedDesign:
-    """The bodies of an assembly as meshes."""
-    return ViewedDesign([_mesh(solid.mesh(_TOLERANCE)) for solid in assembly.solids])
 
 
 def _mesh(body: Body) -> ViewedBody:

@@ -171,21 +171,15 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         if isinstance(run, GradedSelectionRun):
             return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)
-        return _selected(run, found, document, page, library)
-
-
-def _selected(
-    run: SelectionRun, found: TargetAnswer, document: Mapping[str, Any], page: CandidateStates, library: Library
-) -> PageSelection:
-    return PageSelection(
-        selection=document,
-        headline=headline(run),
-        notes=search_notes(run),
-        cards=_cards(run, found, page),
-        remarks=[*_nothing_to_drop(run), *remarks(run)],
-        chart=_chart(run, library),
-        table=None,
-    )
+        return PageSelection(
+            selection=document,
+            headline=headline(run),
+            notes=search_notes(run),
+            cards=_cards(run, found, page),
+            remarks=[*_nothing_to_drop(run), *remarks(run)],
+            chart=_chart(run, library),
+            table=None,
+        )
 
 
 def _cards(run: SelectionRun, found: TargetAnswer, page: CandidateStates) -> list[CandidateCard]:

@@ -50,7 +50,6 @@ def springs(gas: float) -> SimpleNamespace:
     press = SimpleNamespace(
         slices=Springs(),
         k=np.zeros(1, dtype=np.intp),
-        groups=np.zeros(1, dtype=np.intp),
         ambient=gas * one,
         dead=0 * one,
         reach=one,
@@ -59,7 +58,7 @@ def springs(gas: float) -> SimpleNamespace:
         content=2.0 * gas * one,
         volume=lambda nu: 2.0 + nu,
     )
-    press.solve = partial(AtlasPress.solve, press)
+    press.solve, press.rows = partial(AtlasPress.solve, press), lambda _: press
     return press
 
 

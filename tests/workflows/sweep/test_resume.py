@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.workflows.sweep import journal, sweep
 from pneutouch.workflows.sweep.journal import Journal
-from pneutouch.workflows.sweep.work import chunks, study, unpacked
+from pneutouch.workflows.sweep.work import chunks, study
 from tests.running import in_new_process
 from tests.workflows.sweep.conftest import (
     ALONE,
@@ -137,7 +137,9 @@ def records(count):
 
 
 def read(journal):
-    return {number: unpacked(record) for number, record in journal.read().items()}
+    found = []
+    journal.read(found.extend)
+    return {record["point"]: record for record in found}
 
 
 def test_a_journal_cut_anywhere_gives_its_whole_lines_and_takes_new_ones(tmp_path, monkeypatch):

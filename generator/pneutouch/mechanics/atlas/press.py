@@ -144,27 +144,30 @@ class AtlasPress:
         The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. Pressure and force are corrected
         along their tangents for the last step, which is small enough for that to be accurate to its square.
         """
-        at, reached = nu, np.zeros(nu.size, dtype=bool)
-        for _ in range(iterations):
-            at, point = nu, self.slices.point(self.k, nu, height, with_folded=False)
-            gas_volume = self.volume(nu) + self.dead
-            gas = self.content / gas_volume
-            margin = stiffening * point.by_volume + gas / gas_volume
-            excess = gas - self.ambient - stiffening * point.pressure - memory
-            step = excess / np.where(margin > 0, margin, 1.0) / self.reach
-            reached = np.abs(step) < _LAST_STEP
-            moving = ~reached & (margin > 0)
-            if not moving.any():
-                break
-            nu = nu + np.where(moving, np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
-        step = np.where(reached, step, 0.0)
-        swell = step * self.reach
+        point = self.slices.point(self.k, nu, height, with_folded=False)
+        gas_volume = self.volume(nu) + self.dead
+        gas = self.content / gas_volume
+        margin = stiffening * point.by_volume + gas / gas_volume
+        excess = gas - self.ambient - stiffening * point.pressure - memory
+        step = excess / np.where(margin > 0, margin, 1.0) / self.reach
+        close, stable = np.abs(step) < _LAST_STEP, margin > 0
+        last = np.where(close, step, 0.0)
+        swell = last * self.reach
         point = point._replace(
             pressure=point.pressure + point.by_volume * swell,
             force=point.force - point.by_height * swell,
-            folded=self.slices.folded(self.k, at, height),
+            folded=self.slices.folded(self.k, nu, height),
         )
-        return AtlasSolution(nu + step, point, margin, reached & (margin > 0))
+        nu, reached, far = nu + last, close & stable, np.flatnonzero(~close & stable)
+        if far.size and iterations > 1:
+            # The others are done: most are after their first step.
+            start = nu[far] + np.clip(step[far], -_LONGEST, _LONGEST)
+            stiff, held = (x[far] if isinstance(x, np.ndarray) else x for x in (stiffening, memory))
+            part = self.rows(far).solve(start, height[far], stiff, held, iterations - 1)
+            solved = part.nu, *part.point, part.margin, part.converged
+            for column, values in zip((nu, *point, margin, reached), solved, strict=True):
+                column[far] = values
+        return AtlasSolution(nu, point, margin, reached)
 
     def march(self, indentation: Array) -> PressTrack:
         """Equilibria at plate travels ``indentation`` (n, m) in R0, ascending along the last axis from 0."""

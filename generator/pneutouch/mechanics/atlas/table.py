@@ -45,9 +45,10 @@ class AtlasPoint(NamedTuple):
 @dataclass(frozen=True)
 class AtlasSlices:
     """Tables at some wall ratios, numbered k: limit_volume, limit_pressure (walls,), apex (walls, volume), potential
-    (walls, volume, depth), support (walls, volume cells, depth cells), fields: (walls, volume, depth) by name.
-    rest_apex (walls,): outer apex height of the unloaded dome. fold_from (walls,), fold_volume (walls, folds): edge of
-    buckling, the least volume of an unbuckled wall at fold_depths, from depth fold_from on."""
+    (walls, volume, depth), support (walls, volume cells, depth cells). rest_apex (walls,): outer apex height of the
+    unloaded dome. fold_from (walls,), fold_volume (walls, folds): edge of buckling, the least volume of an unbuckled
+    wall at fold_depths, from depth fold_from on. fields: (walls, volume, depth, parts of all fields), with the
+    ``columns`` of each field by its name."""
 
     grid: AtlasAxes
     limit_volume: Array
@@ -59,12 +60,12 @@ class AtlasSlices:
     fold_from: Array
     fold_volume: Array
     fold_depths: Array
-    fields: dict[str, Array]
+    fields: Array
+    columns: dict[str, slice]
 
     def reach(self, k: Index) -> Array:
         """Volume (R0^3) between rest and limit point for walls k, (n,)."""
-        values: Array = self.limit_volume[k] - REST_VOLUME
-        return values
+        return np.asarray(self.limit_volume[k] - REST_VOLUME)
 
     def free_apex(self, k: Index, nu: Array) -> Array:
         """Outer apex height of the free dome and its first two derivatives by nu, (n, 3)."""
@@ -72,8 +73,7 @@ class AtlasSlices:
         return self._apex(k, cell, weight)
 
     def _apex(self, k: Index, cell: Index, weight: Array) -> Array:
-        values: Array = np.matmul(weight, self._apex_windows[k, cell][..., None])[..., 0]
-        return values
+        return np.asarray(np.matmul(weight, self._apex_windows[k, cell][..., None])[..., 0])
 
     @cached_property
     def _apex_windows(self) -> Array:
@@ -129,19 +129,22 @@ class AtlasSlices:
 
     def several(self, names: Sequence[str], k: Index, nu: Array, height: Array) -> list[Array]:
         """Tabulated fields at volumes nu and plate heights, (n,) each."""
-        cell, by_nu = self.grid.volume.basis(nu)
-        depth, by_w = self.grid.depth.values(self._apex(k, cell, by_nu)[:, 0] - height)
-        weight = (by_nu[:, 0, :, None] * by_w[:, None, :]).reshape(nu.size, -1)
-        rows, columns = self.grid.volume.size, self.grid.depth.size
-        side = np.arange(self.grid.depth.degree + 1)
-        offsets = (side[:, None] * columns + side).ravel()
-        where = ((k * rows + cell) * columns + depth)[:, None] + offsets
-
-        def looked_up(part: str) -> Array:
-            return np.asarray((self.fields[part].take(where) * weight).sum(axis=1))
-
+        cell, by_nu = self.grid.volume.values(nu)
+        apex = np.matmul(by_nu[:, None], self._apex_windows[k, cell][..., None])[:, 0, 0]
+        depth, by_w = self.grid.depth.values(apex - height)
+        across = np.matmul(by_nu[:, None], self._field_windows[k, cell, depth]).reshape(*by_w.shape, -1)
+        found = np.matmul(by_w[:, None], across)[:, 0]
         # Saturation is monotone, so the maximum over the parts of a field is taken before the saturation is undone.
-        return [unflattened(name, np.max([looked_up(part) for part in parts(name)], axis=0)) for name in names]
+        return [unflattened(name, found[:, self.columns[name]].max(axis=1)) for name in names]
+
+    @cached_property
+    def _field_windows(self) -> Array:
+        """Spline coefficients of the fields in each cell, (walls, volume cells, depth cells, coefficients, coefficients
+        of all fields)."""
+        walls, rows, columns, held = self.fields.shape
+        size = self.grid.volume.degree + 1, (self.grid.depth.degree + 1) * held
+        flat = self.fields.reshape(walls, rows, columns * held)
+        return np.lib.stride_tricks.sliding_window_view(flat, size, axis=(1, 2))[:, :, ::held]
 
 
 class Atlas:
@@ -151,10 +154,18 @@ class Atlas:
         self.recipe = recipe
         self._tables = tables
         self._grid = axes(recipe)
+        self._stacked: dict[tuple[str, ...], Array] = {}
 
     def boxed(self, recipe: AtlasRecipe) -> Atlas:
         """An atlas with the same tables and another recipe, which may differ only in the box (limits of inputs)."""
         return Atlas(self._tables, recipe)
+
+    def _together(self, names: tuple[str, ...]) -> Array:
+        """Tables of the parts of all fields ``names``, (walls, volume, depth, parts)."""
+        if names not in self._stacked:
+            of_names = [self._tables[part] for name in names for part in parts(name)]
+            self._stacked[names] = np.stack(of_names or [self._tables["potential"]], axis=-1)
+        return self._stacked[names]
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
         """Tables interpolated at wall ratios (walls,) inside the box, with the fields ``names``."""
@@ -163,17 +174,17 @@ class Atlas:
         starts = np.flatnonzero(np.diff(cell, prepend=-1))
         together = list(zip(starts, [*starts[1:], cell.size], strict=True)) if cell.size else []
 
-        def cut(name: str) -> Array:
+        def cut(table: Array) -> Array:
             # All ratios of one cell at once: a spline takes few walls of the table, and products with zeros take time.
-            table = self._tables[name]
             flat = table.reshape(table.shape[0], -1)
             values = np.empty((cell.size, flat.shape[1]))
             for first, end in together:
                 four = flat[cell[first] : cell[first] + grid.degree + 1]
                 np.matmul(weight[first:end, 0], four, out=values[first:end])
-            return values.reshape(-1, *table.shape[1:])
+            return values.reshape(cell.size, *table.shape[1:])
 
         nodes = np.log(self.recipe.wall_ratios)
+        ends = np.cumsum([len(parts(name)) for name in names])
         below = np.clip(np.searchsorted(nodes, np.log(wall_ratio), side="right") - 1, 0, nodes.size - 2)
         support: Flags = self._tables["support"].astype(bool)
         share = ((np.log(wall_ratio) - nodes[below]) / (nodes[below + 1] - nodes[below]))[:, None]
@@ -185,16 +196,17 @@ class Atlas:
 
         return AtlasSlices(
             grid=self._grid,
-            limit_volume=cut("limit_volume"),
-            limit_pressure=cut("limit_pressure"),
-            apex=cut("apex"),
-            potential=cut("potential"),
+            limit_volume=cut(self._tables["limit_volume"]),
+            limit_pressure=cut(self._tables["limit_pressure"]),
+            apex=cut(self._tables["apex"]),
+            potential=cut(self._tables["potential"]),
             support=support[below] & support[below + 1],
             rest_apex=1.0 + wall_ratio,
             fold_from=between("fold_from")[:, 0],
             fold_volume=between("fold_volume"),
             fold_depths=self.recipe.fold_depths,
-            fields={part: cut(part) for name in names for part in parts(name)},
+            fields=cut(self._together(names)),
+            columns={name: slice(end - len(parts(name)), end) for name, end in zip(names, ends, strict=True)},
         )
 
 

@@ -70,7 +70,7 @@ def solved_at(
         if not np.isnan(solved).all():
             known.update(zip(some, solved.T, strict=True))
             break
-    between_them = any(not _among(p, known) for p in pressures)
+    between_them = any(all(abs(p - other) > SAME for other in known) for p in pressures)
     if between_them and 2 <= len(known) < least:
         middle = 0.5 * (min(known) + max(known))
         known[middle] = pressed_logs(bare, (middle,))[:, 0]
@@ -78,10 +78,6 @@ def solved_at(
         return np.array(pressures), np.full((len(FIGURES), len(pressures)), np.nan)
     at = sorted(known)
     return np.array(at), np.stack([known[p] for p in at], axis=1)
-
-
-def _among(pressure: float, others: dict[float, Array]) -> bool:
-    return any(abs(pressure - other) <= SAME for other in others)
 
 
 def between(where: Array, at: Array, values: Array) -> Array:

@@ -311,7 +311,7 @@ def minimise(
     left = np.inf
     for iteration in range(max_iterations):
         size = float(np.linalg.norm(state.residual))
-        if size <= RESIDUAL * state.scale and left <= GAIN * _energy_scale(scene, state):
+        if size <= RESIDUAL * state.scale and left <= GAIN * (state.local.energy + state.scale * scene.solid.wall):
             return NewtonResult(state, iteration)
         newton = find(scene, state)
         slope = float(newton.step @ state.residual)
@@ -328,10 +328,6 @@ def minimise(
     return NewtonFailure(
         f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
     )
-
-
-def _energy_scale(scene: SolidScene, state: SolverState) -> float:
-    return state.local.energy + state.scale * scene.solid.wall
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:

@@ -78,16 +78,12 @@ def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
     """Plate height at which the lowest eigenvalue for n waves passes zero between the last two states of a path."""
     before, after = path[-2:]
     span = before.height - after.height
-    values = {(before.height - s.height) / span: _eigenvalue(harmonic, n, s.state) for s in path}
+    values = {(before.height - s.height) / span: softest(harmonic.bands(s.state, (n,))[n]).value for s in path}
 
     def solve(share: float) -> SolverState | None:
         return _between(before, after, before.height - share * span)
 
     return before.height - span * _root(harmonic, n, values, solve, _WITHIN / span)
-
-
-def _eigenvalue(harmonic: HarmonicSolid, n: int, state: SolverState) -> float:
-    return softest(harmonic.bands(state, (n,))[n]).value
 
 
 def _root(

@@ -78,7 +78,7 @@ def selected(
                 RankedDesign,
                 _choice(selection, choice, solid),
                 rank=rank,
-                runner_up=_is_runner_up(answer.designs, rank - 1),
+                runner_up=any(choice.resin.name == other.resin.name for other in answer.designs[: rank - 1]),
                 passes_check=True if rank in selection.judged else None,
             )
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
@@ -114,10 +114,6 @@ def _contact(selection: SelectionRun) -> Mapping[str, Any] | None:
     notes = contact_notes(search, selection.base)
     record = contact_document(selection.base).get("contact", {"label": contact_text(selection.base)})
     return {**record, "notes": notes, "rounds": search.rounds, "solves": search.solves}
-
-
-def _is_runner_up(designs: list[Candidate], index: int) -> bool:
-    return any(designs[index].resin.name == other.resin.name for other in designs[:index])
 
 
 def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None = None) -> FoundDesign:

@@ -12,7 +12,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import Limits
-from pneutouch.mechanics.rating import rating
+from pneutouch.mechanics.rating import ratings
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
 from pneutouch.selection.candidates import evaluated
@@ -234,7 +234,7 @@ def _trial(
     built = in_resin(sensor, material)
 
     def rate(limits: Limits) -> float:
-        return rating(limits, built, material, printer).pressure
+        return ratings([limits], [built], material, printer)[0].pressure
 
     return trial_of(built, grade_target.pressures, rate, pole, rim)
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -27,9 +26,9 @@ from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
-from pneutouch.workflows.sweep.journal import check_output
+from pneutouch.workflows.sweep.journal import SweepColumns, check_output
 from pneutouch.workflows.sweep.variables import INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
-from pneutouch.workflows.sweep.work import SweepStudy, unpacked
+from pneutouch.workflows.sweep.work import SweepStudy
 
 if TYPE_CHECKING:
     import xarray
@@ -46,35 +45,24 @@ MOST_BYTES = 2**30
 _CONTENT_HASH = "content_hash"
 
 
-def dataset(study: SweepStudy, records: dict[int, bytes]) -> xarray.Dataset:
-    """Dataset of a finished sweep; ``records`` has every point by its number.
-
-    Dimensions are those of the grid, or ``point``, and the driving pressure. Missing numbers are NaN, missing texts are
-    empty."""
+def dataset(columns: SweepColumns) -> xarray.Dataset:
+    """Dataset of a finished sweep. Its dimensions are those of the grid, or ``point``, and the driving pressure.
+    Missing numbers are NaN, missing texts are empty."""
     import xarray
 
-    plan = study.plan
-    requested_kPa = [study.point(i).driving_pressures_kPa for i in range(plan.count)]
-    pressures_kPa = sorted({p for each_kPa in requested_kPa for p in each_kPa})
-    shape, dims = plan.shape, plan.dimensions
-    of_states, of_points = _columns(STATE, plan.count * len(pressures_kPa)), _columns(POINT, plan.count)
-    for i, requested in enumerate(requested_kPa):
-        record = unpacked(records[i])
-        _fill(of_points, i, record["values"])
-        for pressure_kPa, state in zip(requested, record["states"], strict=True):
-            _fill(of_states, i * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
-    every, whole_dims = (*shape, len(pressures_kPa)), (*dims, PRESSURE)
-    content: dict[str, Any] = {v.name: _variable(v, of_states[v.name], every, whole_dims) for v in STATE}
-    content |= {v.name: _variable(v, of_points[v.name], shape, dims) for v in POINT}
+    plan = columns.study.plan
+    every, dims = (*plan.shape, len(columns.pressures_kPa)), (*plan.dimensions, PRESSURE)
+    content: dict[str, Any] = {v.name: _variable(v, columns.states[v.name], every, dims) for v in STATE}
+    content |= {v.name: _variable(v, columns.points[v.name], plan.shape, plan.dimensions) for v in POINT}
     coordinates = {
         PRESSURE: (
             PRESSURE,
-            np.array(pressures_kPa),
+            np.array(columns.pressures_kPa),
             {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES},
         ),
-        **_coordinates(study),
+        **_coordinates(columns.study),
     }
-    whole = xarray.Dataset(content, coordinates, _attributes(study, content))
+    whole = xarray.Dataset(content, coordinates, _attributes(columns.study, content))
     whole.attrs[_CONTENT_HASH] = _content_hash(whole)
     return whole
 
@@ -147,17 +135,6 @@ def _check_size(path: Path) -> None:
     size = check_plain(path, "dataset")
     if size > MOST_BYTES:
         raise oversized(path, size, MOST_BYTES, "dataset")
-
-
-def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, np.ndarray]:
-    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
-    return {v.name: np.full(count, "", object) if v.text else np.full(count, np.nan) for v in variables}
-
-
-def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
-    for name, value in values.items():
-        if value is not None and name in columns:
-            columns[name][row] = sys.intern(value) if isinstance(value, str) else value
 
 
 def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:

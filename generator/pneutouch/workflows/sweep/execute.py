@@ -11,8 +11,8 @@ from pneutouch.errors import ComputationError, InputError, joined
 from pneutouch.stopping import uninterrupted
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
 from pneutouch.workflows.sweep.grid import SweepPlan
-from pneutouch.workflows.sweep.journal import Journal, WorkFolder
-from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, packed, study, unpack, unpacked
+from pneutouch.workflows.sweep.journal import Journal, SweepColumns, WorkFolder
+from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, unpack
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 
 Progress = Callable[[int, int], None]
@@ -61,28 +61,20 @@ def sweep(
     resolved = study(plan, library or Library.default())
     with WorkFolder(out) as folder:
         journal = Journal(folder.journal, resolved.fingerprint)
-        records = {} if fresh else _fitting(journal.read(), resolved)
-        if _is_there(resolved, out, fresh=fresh, resumed=bool(records)):
+        columns = SweepColumns(resolved)
+        if not fresh:
+            journal.read(columns.fill)
+        before = columns.filled
+        if _is_there(resolved, out, fresh=fresh, resumed=before > 0):
             folder.finish(None)
             return _outcome(resolved, out, 0, stored_dataset(out)["status"].values.ravel().tolist())
         if fresh:
             folder.restart()
-        before = len(records)
-        with _keeping(folder, records, plan.count):
-            _compute(resolved, machines, folder, journal, records, progress)
-            content = dataset(resolved, records)
+        with _keeping(folder, columns):
+            _compute(machines, folder, journal, columns, progress)
+            content = dataset(columns)
             folder.finish(netcdf(content))
         return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
-
-
-def _fitting(records: dict[int, bytes], study: SweepStudy) -> dict[int, bytes]:
-    """Records with a state for every driving pressure of their point; points of other records are computed again."""
-    return {
-        index: record
-        for index, record in records.items()
-        if 0 <= index < study.plan.count
-        and len(unpacked(record)["states"]) == len(study.point(index).driving_pressures_kPa)
-    }
 
 
 def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
@@ -102,36 +94,31 @@ def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bo
 
 
 def _compute(
-    study: SweepStudy,
-    machines: ComputeResources,
-    folder: WorkFolder,
-    journal: Journal,
-    records: dict[int, bytes],
-    progress: Progress,
+    machines: ComputeResources, folder: WorkFolder, journal: Journal, columns: SweepColumns, progress: Progress
 ) -> None:
-    """Fill ``records`` with every point; each chunk is kept in the journal as soon as it is done."""
-    total = study.plan.count
-    progress(len(records), total)
-    with contextlib.closing(_batches(study, machines, folder, records)) as batches:
+    """Fill ``columns`` with every point; each chunk is kept in the journal as soon as it is done."""
+    total = columns.study.plan.count
+    progress(columns.filled, total)
+    with contextlib.closing(_batches(machines, folder, columns)) as batches:
         for batch in batches:
             with uninterrupted():
                 journal.append(batch)
-                records.update((record["point"], packed(record)) for record in batch)
-            progress(len(records), total)
+                columns.fill(batch)
+            progress(columns.filled, total)
 
 
 @contextlib.contextmanager
-def _keeping(folder: WorkFolder, records: dict[int, bytes], total: int) -> Iterator[None]:
+def _keeping(folder: WorkFolder, columns: SweepColumns) -> Iterator[None]:
     """Context that adds, to anything that stops the work, how far it came and that it can be continued."""
 
     def kept() -> str:
-        return f"{len(records)} of {total} points are done and kept in {folder.path}"
+        return f"{columns.filled} of {columns.study.plan.count} points are done and kept in {folder.path}"
 
     remedy = "the same command (without `fresh`) goes on from there"
     try:
         yield
     except KeyboardInterrupt as error:
-        if records:
+        if columns.filled:
             error.add_note(f"{kept()}; {remedy.replace('`', '')}")
         raise
     except ComputationError as error:
@@ -142,10 +129,11 @@ def _keeping(folder: WorkFolder, records: dict[int, bytes], total: int) -> Itera
 
 
 def _batches(
-    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, bytes]
+    machines: ComputeResources, folder: WorkFolder, columns: SweepColumns
 ) -> Generator[list[Record], None, None]:
     """Records of the missing points, chunk by chunk, as they are done."""
-    pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])
+    study = columns.study
+    pieces = chunks(study, columns.missing)
     workers = min(machines.workers or cores(), len(pieces))
     if machines.scheduler is not None:
         yield from on_cluster(study, pieces, machines.scheduler)

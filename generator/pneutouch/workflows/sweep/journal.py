@@ -1,4 +1,4 @@
-"""Journal of a sweep: finished points on disk, one line with checksum a chunk, so that a kill loses at most one line.
+"""Progress of a sweep: finished points in arrays, and on disk, one line with checksum a chunk: a kill loses one line.
 
 A line is ``checksum json``. One that does not agree with its checksum was cut off by a kill or damaged later: it is
 dropped, and its points are computed again."""
@@ -10,22 +10,68 @@ import fcntl
 import json
 import os
 import shutil
+import sys
+from collections.abc import Callable, Sequence
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, write_synced
-from pneutouch.spec.files import read_bytes
+from pneutouch.spec.files import check_plain
 from pneutouch.stopping import cleaned, uninterrupted
-from pneutouch.workflows.sweep.work import Record, packed
+from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
+from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 _CHECKSUM_DIGITS = 16
 
 
-MOST_BYTES = 2**30
-"""Greatest size of a journal: some million points."""
+class SweepColumns:
+    """Values of a sweep's points in arrays by the variable's name, filled in as points are done."""
+
+    def __init__(self, study: SweepStudy) -> None:
+        self.study = study
+        count = study.plan.count
+        self.pressures_kPa = sorted({p for i in range(count) for p in study.point(i).driving_pressures_kPa})
+        self._done = np.zeros(count, dtype=bool)
+        self.states, self.points = _columns(STATE, count * len(self.pressures_kPa)), _columns(POINT, count)
+
+    @property
+    def filled(self) -> int:
+        """Number of points that are done."""
+        return int(np.count_nonzero(self._done))
+
+    @property
+    def missing(self) -> list[int]:
+        """Numbers of the points that are not done."""
+        places: list[int] = np.flatnonzero(~self._done).tolist()
+        return places
+
+    def fill(self, records: list[Record]) -> None:
+        """Fill in points; one without a state for each of its driving pressures is left to be computed again."""
+        for record in records:
+            i = record["point"]
+            requested = self.study.point(i).driving_pressures_kPa if 0 <= i < self._done.size else ()
+            if len(requested) != len(record["states"]) or not requested:
+                continue
+            _fill(self.points, i, record["values"])
+            for pressure_kPa, state in zip(requested, record["states"], strict=True):
+                _fill(self.states, i * len(self.pressures_kPa) + self.pressures_kPa.index(pressure_kPa), state)
+            self._done[i] = True
+
+
+def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, np.ndarray]:
+    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
+    return {v.name: np.full(count, "", object) if v.text else np.full(count, np.nan) for v in variables}
+
+
+def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if value is not None and name in columns:
+            columns[name][row] = sys.intern(value) if isinstance(value, str) else value
 
 
 class Journal:
@@ -34,27 +80,27 @@ class Journal:
     def __init__(self, path: Path, fingerprint: str) -> None:
         self.path, self.fingerprint = path, fingerprint
 
-    def read(self) -> dict[int, bytes]:
-        """Finished points by number; damaged lines are removed from the file. Raises InputError for another sweep's
-        journal."""
+    def read(self, keep: Callable[[list[Record]], None]) -> None:
+        """Hand over the finished points, line by line; damaged lines are removed from the file. Raises InputError for
+        another sweep's journal."""
         if not self.path.exists():
-            return {}
-        lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")
-        entries = [(line, entry) for line in lines if (entry := _entry(line)) is not None]
-        records: dict[int, bytes] = {}
-        for _, entry in entries:
-            if entry.sweep != self.fingerprint:
-                problem = (
-                    "holds the progress of another sweep: the design, a material, the printer, the model, the values "
-                    "or the version has changed"
-                )
-                remedy = "`fresh` starts over, or give another `out`"
-                raise InputError(problem, file=self.path.parent, remedy=remedy)
-            records |= {record["point"]: packed(record) for record in entry.records}
-        whole = [line for line, _ in entries]
-        if lines != [*whole, b""]:
-            self._rewrite(whole)
-        return records
+            return
+        check_plain(self.path, "journal")
+        whole = True
+        with self.path.open("rb") as file:
+            for line in file:
+                entry = _entry(line.removesuffix(b"\n"))
+                whole = whole and entry is not None and line.endswith(b"\n")
+                if entry is not None and entry.sweep != self.fingerprint:
+                    problem = (
+                        "holds the progress of another sweep: the design, a material, the printer, the model, the "
+                        "values or the version has changed"
+                    )
+                    remedy = "`fresh` starts over, or give another `out`"
+                    raise InputError(problem, file=self.path.parent, remedy=remedy)
+                keep([] if entry is None else entry.records)
+        if not whole:
+            self._rewrite()
 
     def append(self, records: list[Record]) -> None:
         """Add finished points; they are on the disk when this returns."""
@@ -64,8 +110,9 @@ class Journal:
             file.flush()
             os.fsync(file.fileno())
 
-    def _rewrite(self, lines: list[bytes]) -> None:
-        """Rewrite the file with only these lines, because a line appended to a cut one would be lost with it."""
+    def _rewrite(self) -> None:
+        """Rewrite the file with its whole lines, because a line appended to a cut one would be lost with it."""
+        lines = [line for line in self.path.read_bytes().split(b"\n") if _entry(line) is not None]
         fresh = self.path.with_name(f"{self.path.name}.new")
         replace_whole(fresh, self.path, b"".join(line + b"\n" for line in lines))
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
-import zlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,15 +16,17 @@ from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import InputError, PneutouchError, StatedPressureError
 from pneutouch.evaluation.evaluate import DrawnScene, Evaluation, PredictionOptions, drawn, evaluate_drawn
-from pneutouch.evaluation.result import by_model, rating_record
+from pneutouch.evaluation.result import MODEL_DIGITS, NOTHING, by_model, rating_record
 from pneutouch.mechanics.models.choice import USUAL, model_named
 from pneutouch.mechanics.models.interface import Answered
+from pneutouch.mechanics.rating import Rating, ratings
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.contact import LYING
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 from pneutouch.workflows.sweep.grid import PRESSURES, Settings, SweepPlan
 from pneutouch.workflows.sweep.variables import Interval, point_values, sensitivity_intervals, state_values
 
@@ -200,16 +200,6 @@ Record = dict[str, Any]
 """A finished point as plain data: ``point`` (its number), ``states`` by ascending driving pressure, ``values``."""
 
 
-def packed(record: Record) -> bytes:
-    """A record as it waits in memory for the dataset: compressed, in a tenth of the space."""
-    return zlib.compress(json.dumps(record).encode(), 1)
-
-
-def unpacked(content: bytes) -> Record:
-    """The record that was packed."""
-    return cast("Record", json.loads(zlib.decompress(content)))
-
-
 @dataclass(frozen=True, slots=True)
 class SweepChunk:
     """Points that are computed together, with the name of their design and the options."""
@@ -335,17 +325,33 @@ def _evaluated(scene: DrawnScene, answers: dict[str, Answered], library: Library
 
 def _values(evaluations: Sequence[Evaluation]) -> list[_Values | Exception]:
     """Values of every evaluation, or its error; intervals are computed in one pass, and one by one if that fails."""
-    every = _tried(lambda: sensitivity_intervals(evaluations))
+    every = _tried(lambda: [*zip(evaluations, sensitivity_intervals(evaluations), _ratings(evaluations), strict=True)])
     if not isinstance(every, Exception):
-        return [_tried(partial(_of_evaluation, *pair)) for pair in zip(evaluations, every, strict=True)]
+        return [_tried(partial(_of_evaluation, *known)) for known in every]
     return [every] if len(evaluations) == 1 else [one for each in evaluations for one in _values([each])]
 
 
-def _of_evaluation(evaluation: Evaluation, intervals: list[Interval]) -> _Values:
+def _ratings(evaluations: Sequence[Evaluation]) -> list[Rating]:
+    """Rated pressures by the limits of each prediction's model, in one pass for all of one resin and printer."""
+    alike: dict[tuple[Any, ...], list[int]] = {}
+    for k, one in enumerate(evaluations):
+        known = id(one.scene.membrane_material), id(one.scene.printer), id(one.scene.calibration)
+        alike.setdefault((abs(one.prediction.error_estimate.limit_pressure_relative), *known), []).append(k)
+    found: dict[int, Rating] = {}
+    for (error, *_), rows in alike.items():
+        some = [evaluations[k] for k in rows]
+        scene = some[0].scene
+        pairs = [one.prediction.limits for one in some], [one.sensor for one in some]
+        rated = ratings(*pairs, scene.membrane_material, scene.printer, scene.calibration, error)
+        found.update(zip(rows, rated, strict=True))
+    return [found[k] for k in range(len(evaluations))]
+
+
+def _of_evaluation(evaluation: Evaluation, intervals: list[Interval], rating: Rating) -> _Values:
     record = by_model(evaluation.prediction, curves=False)
-    rating = rating_record(evaluation.rating, [])
     states = [state_values(*pair) for pair in zip(record.states, intervals, strict=True)]
-    return states, point_values(replace(record, rating=rating))
+    point = point_values(replace(record, rating=rating_record(rating, [])))
+    return rounded((states, point), MODEL_DIGITS, NOTHING)
 
 
 def _failure(error: Exception, count: int, library: Library) -> list[dict[str, Any]]:
