@@ -149,7 +149,7 @@ def dataset(path: Path) -> None:
     )
     content.attrs[KEY] = format_of("dataset")
     content.attrs[_CONTENT_HASH] = _content_hash(content)
-    path.write_bytes(netcdf(content))
+    netcdf(content, path)
 
 
 def journal(path: Path) -> None:

@@ -231,7 +231,7 @@ def _threemf() -> bytes:
 def _datasets() -> list[bytes]:
     import xarray
 
-    from pneutouch.workflows.sweep.dataset import _CONTENT_HASH, _content_hash, netcdf
+    from pneutouch.workflows.sweep.dataset import _CONTENT_HASH, _content_hash
 
     content = xarray.Dataset(
         {
@@ -243,7 +243,7 @@ def _datasets() -> list[bytes]:
     )
     content.attrs["format"] = format_of("dataset")
     content.attrs[_CONTENT_HASH] = _content_hash(content)
-    return [netcdf(content)]
+    return [bytes(content.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))]
 
 
 def _slice() -> bytes:

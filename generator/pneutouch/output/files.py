@@ -9,7 +9,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -58,8 +58,12 @@ def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
     replace_files({path: content}, key=key)
 
 
+Content = bytes | memoryview | Iterable[bytes]
+"""Content of a file, whole or in pieces."""
+
+
 @uninterrupted()
-def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
+def replace_files(files: Mapping[Path, Content], *, key: str = "out") -> None:
     """Write files; existing ones stay until all their replacements are whole and on the disk.
 
     Raises InputError if one cannot be written; ``key`` is the parameter that gives the folder.
@@ -93,16 +97,16 @@ def create_file(path: Path, content: bytes, *, key: str = "out") -> None:
         raise _refused(path, error, key) from None
 
 
-def write_synced(path: Path, content: bytes) -> None:
+def write_synced(path: Path, content: Content) -> None:
     """Write a file that is on the disk when this returns. Raises OSError."""
     with path.open("wb") as file:
-        file.write(content)
+        file.writelines((content,) if isinstance(content, bytes | memoryview) else content)
         file.flush()
         os.fsync(file.fileno())
 
 
 @contextlib.contextmanager
-def _hidden(path: Path, content: bytes) -> Iterator[Path]:
+def _hidden(path: Path, content: Content) -> Iterator[Path]:
     """A hidden file next to ``path`` with its content, removed at the end unless renamed. Raises OSError."""
     with parent_folders(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)

@@ -25,6 +25,8 @@ _LINES, _PANELS = 6, 4
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, "#0B5C8A", "#9A9A9A")
 _RATIOS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 _OUTSIDE, _MOST_TEXTS = "#EFEFEF", 120
+_MOST_PATHS, _DPI = 5000, 200
+"""Most cells of a map that are paths in an SVG, and the resolution of more: 50,000 paths take 7 MB."""
 
 
 @dataclass(frozen=True)
@@ -167,6 +169,7 @@ def _mapped(swept: SweptFigure) -> tuple[str, bytes]:
     values = np.concatenate([one.value[np.isfinite(one.value)] for _, one in panels])
     span = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
     with figure(*_size(len(panels))) as drawn:
+        drawn.set_dpi(_DPI)
         axes = _grid(drawn, len(panels))
         for ax, (title, one) in zip(axes, panels, strict=True):
             shown = _map(ax, one, span)
@@ -192,6 +195,7 @@ def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
     low, high = span
     ax.set_facecolor(_OUTSIDE)
     scale: dict[str, Any] = {"cmap": "cividis", "vmin": low, "vmax": high, "shading": "nearest"}
+    scale["rasterized"] = cells.size > _MOST_PATHS
     shown = ax.pcolormesh(x[order_x], y[order_y], np.ma.masked_invalid(cells), **scale)
     if cells.size <= _MOST_TEXTS:
         for (row, column), cell in np.ndenumerate(cells):
@@ -342,5 +346,5 @@ def _files(drawn: Figure) -> tuple[str, bytes]:
     opaque = f'{text[:start]}\n <rect width="100%" height="100%" fill="#ffffff"/>{text[start:]}'
     buffer = io.BytesIO()
     FigureCanvasAgg(drawn)
-    drawn.savefig(buffer, format="png", dpi=200, facecolor="white", metadata={"Software": None})
+    drawn.savefig(buffer, format="png", dpi=_DPI, facecolor="white", metadata={"Software": None})
     return f'<?xml version="1.0" encoding="utf-8"?>\n{opaque}', buffer.getvalue()

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -16,6 +17,8 @@ from pneutouch.tables.text import LONGEST_LINE, TOO_LONG, TextBytes
 
 _MARKS = tuple(mark.encode() for mark in COMMENT)
 _DAY = 86400.0
+_ROWS = 1000
+"""Rows that are written at once."""
 
 CHUNK = 4 * 2**20
 """Bytes parsed at once: about 100 000 rows; larger chunks are not faster and take more memory."""
@@ -282,9 +285,14 @@ def safe_cell(value: object) -> object:
 
 def csv_bytes(head: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
     """Table as a CSV file in UTF-8: a header row and ``rows``, every cell made safe by `safe_cell`."""
-    text = io.TextIOWrapper(buffer := io.BytesIO(), "utf-8", newline="")
+    return b"".join(csv_pieces(head, rows))
+
+
+def csv_pieces(head: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[bytes]:
+    """`csv_bytes` piece by piece, for tables of any length."""
+    text, every = io.StringIO(newline=""), itertools.chain([head], rows)
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(safe_cell(name) for name in head)
-    writer.writerows([safe_cell(cell) for cell in row] for row in rows)
-    text.flush()
-    return buffer.getvalue()
+    while some := list(itertools.islice(every, _ROWS)):
+        writer.writerows([safe_cell(cell) for cell in row] for row in some)
+        yield text.getvalue().encode()
+        text.seek(text.truncate(0))

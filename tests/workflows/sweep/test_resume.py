@@ -70,9 +70,9 @@ def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
 
 
 KILLS = {
-    "dataset half written": "journal.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content[:900]), die())",
-    "dataset not renamed": "journal.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content), die())",
-    "dataset renamed": "journal._sync_folder = die",
+    "dataset half written": "journal.replace_whole = lambda fresh, target, write: (write(fresh), os.truncate(fresh, 900), die())",
+    "dataset not renamed": "journal.replace_whole = lambda fresh, target, write: (write(fresh), die())",
+    "dataset renamed": "journal.sync = lambda path: path.is_dir() and die()",
     "journal removed": "journal.WorkFolder._clear = die",
 }
 
@@ -216,7 +216,7 @@ def test_a_full_disk_is_said_and_the_progress_kept(single, library, tmp_path, mo
         sweep(six(), out, ALONE, library=library)
     monkeypatch.undo()
 
-    def nowhere(fresh, target, content):
+    def nowhere(fresh, target, write):
         raise OSError(28, "No space left on device", str(fresh))
 
     monkeypatch.setattr(journal, "replace_whole", nowhere)

@@ -19,12 +19,12 @@ from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models.choice import USUAL
-from pneutouch.output.files import replace_files
+from pneutouch.output.files import Content, replace_files
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
-from pneutouch.tables.csv_table import csv_bytes
+from pneutouch.tables.csv_table import csv_pieces
 from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import SweepColumns, check_output
 from pneutouch.workflows.sweep.variables import INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
@@ -73,22 +73,28 @@ def _content_hash(content: xarray.Dataset) -> str:
     for name in sorted(map(str, content.variables)):
         column = content[name]
         values = column.values
-        plain = json.dumps(values.tolist()).encode() if values.dtype.kind in "OU" else values.astype("<f8").tobytes()
         head = [
             name,
             list(map(str, column.dims)),
             list(values.shape),
             sorted((k, str(v)) for k, v in column.attrs.items()),
         ]
-        digest.update(json.dumps(head).encode() + plain)
+        digest.update(json.dumps(head).encode())
+        if values.dtype.kind not in "OU":
+            digest.update(values.astype("<f8").tobytes())
+            continue
+        # Row by row: all words of a large sweep as one text take more memory than its dataset.
+        for k, part in enumerate(values):
+            digest.update((", " if k else "[").encode() + json.dumps(np.asarray(part).tolist()).encode())
+        digest.update(b"]")
     attributes = sorted((str(k), str(v)) for k, v in content.attrs.items() if k != _CONTENT_HASH)
     digest.update(json.dumps(attributes).encode())
     return digest.hexdigest()
 
 
-def netcdf(content: xarray.Dataset) -> bytes:
-    """Bytes of the dataset as a netCDF file."""
-    return bytes(content.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))
+def netcdf(content: xarray.Dataset, path: Path) -> None:
+    """Write the dataset as a netCDF file. Raises OSError."""
+    content.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
 
 
 def stored_fingerprint(path: Path) -> str:
@@ -208,26 +214,26 @@ def table_rows(content: xarray.Dataset) -> Iterator[dict[str, Any]]:
     names = [v.name for v in (*STATE, *POINT)]
     fields = [str(name) for name in content.coords if name not in (*dims, PRESSURE)]
     swept = [*(str(dim) for dim in dims if dim != PRESSURE), *fields]
-    arrays = {name: content[name].values for name in (*swept, PRESSURE, *names)}
-    of_dims = {name: [dims.index(dim) for dim in content[name].dims] for name in arrays}
-    for place in np.ndindex(*(content.sizes[dim] for dim in dims)):
-        row = {name: _plain(values[tuple(place[k] for k in of_dims[name])]) for name, values in arrays.items()}
-        if row["status"]:
-            yield row
+    arrays = {}
+    for name in (*swept, PRESSURE, *names):
+        own = content[name].dims
+        values = content[name].transpose(*(dim for dim in dims if dim in own)).values
+        whole = values.reshape([content.sizes[dim] if dim in own else 1 for dim in dims])
+        arrays[name] = np.broadcast_to(whole, [content.sizes[dim] for dim in dims])
+    for k in range(content.sizes[dims[0]]):
+        columns = [values[k].ravel().tolist() for values in arrays.values()]
+        for row in zip(*columns, strict=True):
+            found = {name: None if x != x else x for name, x in zip(arrays, row, strict=True)}
+            if found["status"]:
+                yield found
 
 
-def _plain(value: Any) -> Any:
-    """The value as a plain Python number or text; None for NaN."""
-    value = value.item() if hasattr(value, "item") else value
-    return None if isinstance(value, float) and np.isnan(value) else value
-
-
-def table_csv(rows: Iterable[dict[str, Any]]) -> bytes:
-    """Rows as a CSV file; numbers with twelve digits."""
+def table_csv(rows: Iterable[dict[str, Any]]) -> Iterator[bytes]:
+    """Rows as a CSV file, piece by piece; numbers with twelve digits."""
     every = iter(rows)
     first = list(islice(every, 1))
     head = list(first[0]) if first else []
-    return csv_bytes(head, ([_cell(value) for value in row.values()] for row in chain(first, every)))
+    return csv_pieces(head, ([_cell(value) for value in row.values()] for row in chain(first, every)))
 
 
 def _cell(value: Any) -> Any:
@@ -257,7 +263,7 @@ def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], l
 
     content = stored_dataset(out)
     swept = swept_figure(content)
-    files = {out.with_suffix(".csv"): table_csv(table_rows(content))}
+    files: dict[Path, Content] = {out.with_suffix(".csv"): table_csv(table_rows(content))}
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
@@ -299,7 +305,7 @@ def _axis(content: xarray.Dataset, name: str) -> Any:
 
     values = content[name]
     unit = str(values.attrs.get("units", ""))
-    plain = tuple(_plain(value) for value in values.values)
+    plain = tuple(None if x != x else x for x in values.values.tolist())
     if name == PRESSURE:
         return SweptAxis(name, "driving pressure", unit, plain)
     words = str(values.attrs.get("key", name)).replace(".", " ").replace("_", " ")

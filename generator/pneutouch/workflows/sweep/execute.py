@@ -4,6 +4,7 @@ import contextlib
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from pneutouch.catalogue import Library
@@ -73,7 +74,7 @@ def sweep(
         with _keeping(folder, columns):
             _compute(machines, folder, journal, columns, progress)
             content = dataset(columns)
-            folder.finish(netcdf(content))
+            folder.finish(partial(netcdf, content))
         return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
 
 

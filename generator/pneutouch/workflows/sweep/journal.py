@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.errors import InputError
-from pneutouch.output.files import digest, write_synced
+from pneutouch.output.files import digest
 from pneutouch.spec.files import check_plain
 from pneutouch.stopping import cleaned, uninterrupted
 from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
@@ -114,15 +114,16 @@ class Journal:
         """Rewrite the file with its whole lines, because a line appended to a cut one would be lost with it."""
         lines = [line for line in self.path.read_bytes().split(b"\n") if _entry(line) is not None]
         fresh = self.path.with_name(f"{self.path.name}.new")
-        replace_whole(fresh, self.path, b"".join(line + b"\n" for line in lines))
+        replace_whole(fresh, self.path, lambda path: path.write_bytes(b"".join(line + b"\n" for line in lines)))
 
 
-def replace_whole(fresh: Path, target: Path, content: bytes) -> None:
-    """Write ``content`` to ``fresh``, synced to disk, then rename it to ``target``, so that this is never half a file.
+def replace_whole(fresh: Path, target: Path, write: Callable[[Path], object]) -> None:
+    """Let ``write`` write ``fresh``, sync it to disk, then rename it to ``target``, so that this is never half a file.
 
     For files of the locked work folder, where a kill leaves ``fresh`` under a name that the next sweep clears. Raises
     OSError, so that a sweep can report which points are kept."""
-    write_synced(fresh, content)
+    write(fresh)
+    sync(fresh)
     fresh.replace(target)
 
 
@@ -224,15 +225,16 @@ class WorkFolder:
         """Delete all progress."""
         self.journal.unlink(missing_ok=True)
 
-    def finish(self, content: bytes | None) -> None:
-        """Put the dataset in its place, whole, and delete the progress; None leaves the dataset that is there."""
+    def finish(self, write: Callable[[Path], None] | None) -> None:
+        """Let ``write`` write the dataset, put it in its place, whole, and delete the progress; None leaves the dataset
+        that is there."""
         with uninterrupted():
-            self._put(content)
+            self._put(write)
 
-    def _put(self, content: bytes | None) -> None:
-        if content is not None:
-            replace_whole(self.path / _DATASET, self.out, content)
-            _sync_folder(self.out.parent)
+    def _put(self, write: Callable[[Path], None] | None) -> None:
+        if write is not None:
+            replace_whole(self.path / _DATASET, self.out, write)
+            sync(self.out.parent)
         self.journal.unlink(missing_ok=True)
 
     def _clear(self) -> None:
@@ -284,9 +286,9 @@ def check_output(out: Path) -> None:
         raise InputError(f"{parent} is no folder that you may write to", key="out", remedy="give a file in one")
 
 
-def _sync_folder(folder: Path) -> None:
-    """Sync a folder to disk, so that a rename in it survives a power cut."""
-    handle = os.open(folder, os.O_RDONLY)
+def sync(path: Path) -> None:
+    """Sync a file, or a folder with the names in it, to disk, so that it survives a power cut."""
+    handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
     finally:
