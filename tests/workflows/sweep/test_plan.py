@@ -86,8 +86,8 @@ BAD = {
         ["membrane.wall_thickness_mm[1] = 1", "once only"],
     ),
     "too many": (
-        f'{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n"membrane.inner_radius_mm" = {{from = 8, to = 9, count = 11}}',
-        ["110000 points", "at most 100000"],
+        f'{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n"membrane.inner_radius_mm" = {{from = 8, to = 9, count = 110}}',
+        ["1100000 points", "at most 1000000"],
     ),
     "bad point": (f"{BASE}[[point]]\n{WALL} = 1\n[[point]]\n{WALL} = 60", ["point[1]", "from 0.05 to 50 mm"]),
     "pressures out of bounds": (

@@ -161,10 +161,10 @@ class Atlas:
         return Atlas(self._tables, recipe)
 
     def _together(self, names: tuple[str, ...]) -> Array:
-        """Tables of the parts of all fields ``names``, (walls, volume, depth, parts)."""
+        """Tables of all parts of fields, (walls, volume, depth, parts)."""
         if names not in self._stacked:
-            of_names = [self._tables[part] for name in names for part in parts(name)]
-            self._stacked[names] = np.stack(of_names or [self._tables["potential"]], axis=-1)
+            every = [self._tables[part] for name in names for part in parts(name)] or [self._tables["potential"]]
+            self._stacked[names] = np.stack(every, axis=-1)
         return self._stacked[names]
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
@@ -175,12 +175,12 @@ class Atlas:
         together = list(zip(starts, [*starts[1:], cell.size], strict=True)) if cell.size else []
 
         def cut(table: Array) -> Array:
-            # All ratios of one cell at once: a spline takes few walls of the table, and products with zeros take time.
+            # All ratios of one cell at once. BLAS would start threads, which take twice the time beside other work.
             flat = table.reshape(table.shape[0], -1)
             values = np.empty((cell.size, flat.shape[1]))
             for first, end in together:
                 four = flat[cell[first] : cell[first] + grid.degree + 1]
-                np.matmul(weight[first:end, 0], four, out=values[first:end])
+                np.einsum("nk,km->nm", weight[first:end, 0], four, out=values[first:end])
             return values.reshape(cell.size, *table.shape[1:])
 
         nodes = np.log(self.recipe.wall_ratios)

@@ -27,7 +27,7 @@ from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_pieces
 from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import SweepColumns, check_output
-from pneutouch.workflows.sweep.variables import INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
+from pneutouch.workflows.sweep.variables import ENDS, INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
 from pneutouch.workflows.sweep.work import SweepStudy
 
 if TYPE_CHECKING:
@@ -99,42 +99,33 @@ def netcdf(content: xarray.Dataset, path: Path) -> None:
 
 def stored_fingerprint(path: Path) -> str:
     """Fingerprint of a finished sweep, its file read whole. Raises InputError if it is no dataset, or damaged."""
-    import xarray
-
-    _check_size(path)
-    try:
-        with xarray.open_dataset(path, engine="scipy") as content:
-            check_format("dataset", content.attrs, path)
-            return str(content.load().attrs["input_hash"])
-    except InputError:
-        raise
-    # scipy meets a truncated file with whatever its arrays make of it.
-    except Exception:
-        raise InputError(
-            f"{path}: not a dataset that pneutouch sweep wrote, or damaged",
-            key="out",
-            remedy="move it away or give another `out`",
-        ) from None
+    why, remedy = "not a dataset that pneutouch sweep wrote, or damaged", "move it away or give another `out`"
+    return str(_loaded(path, InputError(f"{path}: {why}", key="out", remedy=remedy)).attrs["input_hash"])
 
 
 def stored_dataset(path: Path) -> xarray.Dataset:
     """Dataset of a finished sweep. Raises InputError if it is not as it was written."""
+    why = "the dataset is damaged: its content is not what the sweep wrote"
+    return _loaded(path, InputError(why, file=path, remedy="move it, or compute it again with `fresh`"), hashed=True)
+
+
+def _loaded(path: Path, damaged: InputError, *, hashed: bool = False) -> xarray.Dataset:
+    """Dataset of a file; raises ``damaged`` if it is none, or if it is to be ``hashed`` and has another content."""
     import xarray
 
     _check_size(path)
-    why = "the dataset is damaged: its content is not what the sweep wrote"
     try:
         with xarray.open_dataset(path, engine="scipy") as opened:
             content = opened.load()
         check_format("dataset", content.attrs, path)
-        if content.attrs.get(_CONTENT_HASH) == _content_hash(content):
+        if "input_hash" in content.attrs and (not hashed or content.attrs[_CONTENT_HASH] == _content_hash(content)):
             return content
     except InputError:
         raise
-    # What was changed can be anything: a text that is no text, a number that is a date.
+    # What was changed can be anything: a text that is no text, a number that is a date, a file that was cut.
     except Exception:
         pass
-    raise InputError(why, file=path, remedy="move it, or compute it again with `fresh`")
+    raise damaged
 
 
 def _check_size(path: Path) -> None:
@@ -144,11 +135,7 @@ def _check_size(path: Path) -> None:
 
 
 def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
-    names = (
-        {"long_name": variable.long_name}
-        if variable.text
-        else {"units": variable.units, "long_name": variable.long_name}
-    )
+    names = ({} if variable.text else {"units": variable.units}) | {"long_name": variable.long_name}
     return dims, values.reshape(shape), names
 
 
@@ -205,9 +192,6 @@ def _attributes(study: SweepStudy, content: dict[str, Any]) -> dict[str, str]:
     }
 
 
-_ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
-
-
 def table_rows(content: xarray.Dataset) -> Iterator[dict[str, Any]]:
     """A row for each state, in the dataset's order: swept fields, driving pressure, figures; None if missing."""
     dims = list(content["status"].dims)
@@ -231,9 +215,10 @@ def table_rows(content: xarray.Dataset) -> Iterator[dict[str, Any]]:
 def table_csv(rows: Iterable[dict[str, Any]]) -> Iterator[bytes]:
     """Rows as a CSV file, piece by piece; numbers with twelve digits."""
     every = iter(rows)
-    first = list(islice(every, 1))
-    head = list(first[0]) if first else []
-    return csv_pieces(head, ([_cell(value) for value in row.values()] for row in chain(first, every)))
+    first = next(every, {})
+    return csv_pieces(
+        list(first), ([_cell(value) for value in row.values()] for row in chain([first] if first else [], every))
+    )
 
 
 def _cell(value: Any) -> Any:
@@ -286,14 +271,14 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
         content = _gridded(content)
         dims = [str(dim) for dim in content[SENSITIVITY_KEY].dims]
     axes = tuple(_axis(content, name) for name in dims)
-    arrays = (content[name].values for name in (SENSITIVITY_KEY, *_ENDS))
+    arrays = (content[name].values for name in (SENSITIVITY_KEY, *ENDS))
     return SweptFigure("sensitivity  (kPa/N)", axes, *arrays)
 
 
 def _gridded(content: xarray.Dataset) -> xarray.Dataset:
     """A list of points over its varied field, if it is the only one and without repeats; else over their number."""
     fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
-    kept = content[[SENSITIVITY_KEY, *_ENDS]]
+    kept = content[[SENSITIVITY_KEY, *ENDS]]
     places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
     if len(fields) == 1 and len(set(places)) == len(places):
         return kept.swap_dims(point=fields[0]).sortby(fields[0])
@@ -337,7 +322,7 @@ def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
 
     axes = {name: _axis(content, name) for name in map(str, content["status"].dims) if name != PRESSURE}
     first, second = check_dense({name: axis.values for name, axis in axes.items() if name != "point"})
-    content = content.assign({INTERVAL: 50.0 * np.log(content[_ENDS[1]] / content[_ENDS[0]])}).sortby([first, second])
+    content = content.assign({INTERVAL: 50.0 * np.log(content[ENDS[1]] / content[ENDS[0]])}).sortby([first, second])
     others = [name for name in axes if name not in (first, second)]
     # Names before numbers, and last what does not vary.
     others.sort(key=lambda name: (len(axes[name].values) == 1, axes[name].numeric))

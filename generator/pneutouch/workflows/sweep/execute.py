@@ -1,6 +1,7 @@
 """Running of a sweep: resolve it, continue where it stopped, compute, write the dataset, clear up."""
 
 import contextlib
+import math
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from pneutouch.stopping import uninterrupted
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
 from pneutouch.workflows.sweep.grid import SweepPlan
 from pneutouch.workflows.sweep.journal import Journal, SweepColumns, WorkFolder
-from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, unpack
+from pneutouch.workflows.sweep.work import CHUNK_POINTS, Record, SweepStudy, chunks, study, unpack
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 
 Progress = Callable[[int, int], None]
@@ -134,8 +135,9 @@ def _batches(
 ) -> Generator[list[Record], None, None]:
     """Records of the missing points, chunk by chunk, as they are done."""
     study = columns.study
-    pieces = chunks(study, columns.missing)
-    workers = min(machines.workers or cores(), len(pieces))
+    missing = columns.missing
+    pieces = chunks(study, missing)
+    workers = min(machines.workers or cores(), math.ceil(len(missing) / CHUNK_POINTS.get(study.plan.model, 1)))
     if machines.scheduler is not None:
         yield from on_cluster(study, pieces, machines.scheduler)
         return
@@ -145,10 +147,5 @@ def _batches(
 
 def _outcome(study: SweepStudy, out: Path, computed: int, states: list[str]) -> SweepResult:
     counted = Counter(states)
-    return SweepResult(
-        out,
-        study.plan.count,
-        computed,
-        {name: counted[name] for name in ("ok", "refused", "failed")},
-        study.fingerprint,
-    )
+    counts = {name: counted[name] for name in ("ok", "refused", "failed")}
+    return SweepResult(out, study.plan.count, computed, counts, study.fingerprint)

@@ -24,7 +24,7 @@ from pneutouch.spec.values import file_name, is_finite, name_of
 PRESSURES = "pneumatics.driving_pressures_kPa"
 """The one field that is a dimension of every sweep, because a prediction gives all its states at once."""
 
-MAX_POINTS = 100_000
+MAX_POINTS = 1_000_000
 
 Value = float | int | str | bool | list[Any]
 Settings = dict[str, Value]

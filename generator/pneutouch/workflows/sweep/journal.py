@@ -47,8 +47,7 @@ class SweepColumns:
     @property
     def missing(self) -> list[int]:
         """Numbers of the points that are not done."""
-        places: list[int] = np.flatnonzero(~self._done).tolist()
-        return places
+        return [int(i) for i in np.flatnonzero(~self._done)]
 
     def fill(self, records: list[Record]) -> None:
         """Fill in points; one without a state for each of its driving pressures is left to be computed again."""

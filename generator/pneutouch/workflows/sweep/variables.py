@@ -76,7 +76,7 @@ def _unread(state: StateRecord) -> None:
     """Return no value: an interval is not part of a state (see `state_values`)."""
 
 
-_ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
+ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 _END = "end of the interval of the sensitivity, k = 2; unknown: NaN"
 
 STATE: tuple[SweepVariable, ...] = (
@@ -85,8 +85,8 @@ STATE: tuple[SweepVariable, ...] = (
     ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number(SENSITIVITY_KEY, "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
-    SweepVariable(_ENDS[0], "kPa/N", f"lower {_END}", _unread),
-    SweepVariable(_ENDS[1], "kPa/N", f"upper {_END}", _unread),
+    SweepVariable(ENDS[0], "kPa/N", f"lower {_END}", _unread),
+    SweepVariable(ENDS[1], "kPa/N", f"upper {_END}", _unread),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
     _number("r_squared", "1", "coefficient of determination of the straight line"),
     _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
@@ -138,7 +138,7 @@ POINT: tuple[SweepVariable, ...] = (
 
 def state_values(state: StateRecord, interval: Interval) -> dict[str, float | str | None]:
     """Values of a state for the dataset, with the ends of its sensitivity's interval; None where unknown."""
-    ends = dict(zip(_ENDS, interval or (None, None), strict=True))
+    ends = dict(zip(ENDS, interval or (None, None), strict=True))
     return {variable.name: ends.get(variable.name, variable.read(state)) for variable in STATE}
 
 

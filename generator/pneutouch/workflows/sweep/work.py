@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -209,13 +209,13 @@ class SweepChunk:
     options: PredictionOptions
 
 
-def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
+def chunks(study: SweepStudy, indices: list[int]) -> Iterator[SweepChunk]:
     """Chunks that hold one of these numbers: cut alike whatever is missing, so that the bytes stay the same."""
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
-    starts = dict.fromkeys(index - index % size for index in indices)
     options = PredictionOptions(plan.model, plan.closure, plan.clamp)
-    numbers = (range(start, min(start + size, plan.count)) for start in starts)
-    return [SweepChunk(tuple(map(study.point, some)), study.name, options) for some in numbers]
+    for start in dict.fromkeys(index - index % size for index in indices):
+        numbers = range(start, min(start + size, plan.count))
+        yield SweepChunk(tuple(map(study.point, numbers)), study.name, options)
 
 
 def unpack(files: dict[str, str], folder: Path) -> None:

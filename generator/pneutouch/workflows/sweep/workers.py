@@ -11,7 +11,7 @@ import os
 import signal
 import threading
 from asyncio import CancelledError
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,7 +33,7 @@ _QUEUED = 3
 """Chunks sent ahead for each core of the cluster: more would only add to the work that a stop throws away."""
 
 
-def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
+def on_cluster(study: SweepStudy, chunks: Iterable[SweepChunk], address: str) -> Iterator[list[Record]]:
     """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are finished.
 
     If a worker is lost, Dask computes its chunk again elsewhere. Raises InputError if there is no cluster that can do
@@ -50,7 +50,7 @@ def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Ite
         ) from None
 
 
-def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
+def _computed(client: Client, study: SweepStudy, chunks: Iterable[SweepChunk], address: str) -> Iterator[list[Record]]:
     from distributed import as_completed
 
     waiting = iter(chunks)
@@ -165,13 +165,13 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]:
+def in_process(chunks: Iterable[SweepChunk], folder: Path) -> Iterator[list[Record]]:
     """Compute one chunk after the other in this process."""
     for chunk in chunks:
         yield compute(chunk, folder)
 
 
-def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
+def in_pool(chunks: Iterable[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
     """Compute chunks in ``workers`` processes; records come in the order in which chunks are finished.
 
     Raises ComputationError if a worker dies. If the iteration is closed early, the processes end as well.
