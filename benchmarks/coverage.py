@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from tests.bench.blocks import blocks_of
 
 from benchmarks.store import store, stored
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figures import BY_KEY, FIGURES, RESOLVED, RunGroup, summarize
-from pneutouch.bench.record import MeasuredCurve, blocks_of
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, population, press_curves, simulate_run
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves
 from pneutouch.catalogue import Library

@@ -17,10 +17,11 @@ Pair = tuple[Callable[[], object], Callable[[], object]]
 
 
 def check_of_a_sensor(folder: Path) -> Pair:
+    from tests.parts.overlap import overlap_volume
+
     from pneutouch.evaluation.subject import subject_of
     from pneutouch.parts import assemble
     from pneutouch.printability import check
-    from pneutouch.printability.rules.bodies import overlap_volume
 
     scene = load_scene("stiff-dome", None, LIBRARY)
     subject = subject_of(assemble(scene))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.record import blocks_of
 from pneutouch.spec.campaign import Rig
+from tests.bench.blocks import blocks_of
 from tests.bench.rig import Dome, Sensor, run_of
 
 FILE = Path("run.csv")

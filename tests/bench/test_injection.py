@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.reading import INJECTION, dead_volume_of_cap, leak_of, leak_rate, read_injection
-from pneutouch.bench.record import blocks_of
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA, ML
+from tests.bench.blocks import blocks_of
 from tests.refusals import refused
 
 AMBIENT = 101.325 * KPA

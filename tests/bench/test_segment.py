@@ -12,11 +12,11 @@ import pytest
 from pneutouch.bench.curve import LOADING_POINTS, curve_of
 from pneutouch.bench.excursions import excursions, position_noise
 from pneutouch.bench.indents import HOLD, protocol
-from pneutouch.bench.record import blocks_of
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA
+from tests.bench.blocks import blocks_of
 from tests.bench.curves import FILE, LAWS, curve, whys
 from tests.bench.rig import Faults, Sensor, record, run_of, small
 

@@ -9,11 +9,12 @@ import pytest
 
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.reading import PLATE, read_blocks
-from pneutouch.bench.record import SuspectInterval, blocks_of
+from pneutouch.bench.record import SuspectInterval
 from pneutouch.bench.run_warnings import MOST
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
+from tests.bench.blocks import blocks_of
 from tests.bench.curves import FILE, curve, whys
 from tests.bench.rig import run_of, small, write
 

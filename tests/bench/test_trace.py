@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pneutouch.bench.record import MOST, MeasuredCurve, SuspectInterval, blocks_of, trace
+from pneutouch.bench.record import MOST, MeasuredCurve, SuspectInterval, trace
 from pneutouch.report.fit_charts import evidence_svg
 from pneutouch.units import KPA
+from tests.bench.blocks import blocks_of
 from tests.bench.rig import run_of
 
 

@@ -136,7 +136,7 @@ def test_pictures_of_a_longer_name_are_in_no_place_of_this_one_s(command, tmp_pa
         (["missing.toml"], "missing.toml: no such file"),
         (["wall-and-resin.toml", "--design", "paper-dome"], "one or the other"),
         (["wall-and-resin.toml", "--over", "membrane.material=FLX9940"], "one or the other"),
-        (["paper-dome", "--over", "membrane.material=FLX9940"], "a design to vary is given by --design paper-dome"),
+        (["paper-dome", "--over", "membrane.material=FLX994"], "Did you mean FLX9940?"),
         (["wall-and-resin.toml", "--set", "membrane.material=FLX9940"], "varied too"),
         (["wall-and-resin.toml", "--set", "membrane.material"], "--set membrane.material"),
         (["wall-and-resin.toml", "--workers", "0"], "--workers 0"),

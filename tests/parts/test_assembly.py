@@ -15,10 +15,11 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
 from pneutouch.parts.membrane import HELD
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
 from pneutouch.spec.read import parse_changes
 from tests.catalogue.store import BASE, KINDS, SMALL, assembled, combinations
 from tests.conftest import ROOT
+from tests.parts.overlap import overlap_volume
 from tests.refusals import refused
 
 LIBRARY = Library((ROOT,))

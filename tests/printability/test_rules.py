@@ -16,10 +16,11 @@ from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import assemble
 from pneutouch.printability import PrintItem, PrintSubject, check
 from pneutouch.printability.rulebook import RULES
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
+from tests.parts.overlap import overlap_volume
 from tests.printability.gallery import BAD, ball, box, item, one
 
 LIBRARY = Library((ROOT,))

@@ -14,9 +14,9 @@ from pneutouch.evaluation.subject import subject_of
 from pneutouch.export.threemf import threemf
 from pneutouch.parts import Assembly, assemble
 from pneutouch.printability import Finding, check
-from pneutouch.printability.rules.bodies import overlap_volume
 from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
+from tests.parts.overlap import overlap_volume
 
 LIBRARY = Library((ROOT,))
 RESINS = list(elastomers(LIBRARY))

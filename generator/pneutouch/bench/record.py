@@ -306,18 +306,3 @@ class BlockCollector:
             rare = longest <= ISOLATED and count < RARE * (self._samples + count)
             warnings.append(SuspectInterval(self._first or 0.0, self._last, why, True, "note" if rare else "other"))
         return warnings
-
-
-def blocks_of(
-    file: Path,
-    time: Array,
-    position: Array,
-    force: Array,
-    pressure: Array,
-    rate: float | None = None,
-    size: int | None = None,
-) -> Blocks:
-    """Blocks of samples in memory, (n,) each, s, mm, N, MPa, without range checks. Raises as `BlockCollector`."""
-    collector = BlockCollector(file, rate, size, len(time))
-    collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
-    return collector.blocks()

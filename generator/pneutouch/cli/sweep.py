@@ -24,7 +24,9 @@ _MODEL_HELP = "Model; solid, or harmonic off the axis, where neither this nor th
 
 @app.command()
 def sweep(
-    file: Annotated[Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list.")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list; with --over a design.")
+    ] = None,
     design: Annotated[
         str | None,
         typer.Option("--design", help="Base design, if no sweep file is given.", autocompletion=names("designs")),
@@ -85,6 +87,8 @@ def _plan(
 ) -> SweepPlan:
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
+    if file is not None and over and design is None and file.suffix != ".toml":
+        file, design = None, str(file)
     if file is not None and (design is not None or over):
         problem = f"a sweep file and {'--over' if over else '--design'}: give one or the other"
         remedy = f"a design to vary is given by --design {file}" if design is None else None

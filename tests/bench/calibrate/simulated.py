@@ -13,7 +13,7 @@ from pneutouch.bench.calibrate.fitted_atlas import FLOOR, _shape
 from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR, CalibrationParameters
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.record import MeasuredCurve, blocks_of
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.simulate.curve import PressCurve, press_curves
 from pneutouch.bench.simulate.rig import SimulatedSpecimens
 from pneutouch.bench.simulate.runs import SimulationTruth, simulate_run
@@ -21,6 +21,7 @@ from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.campaign import CampaignRun, Rig
 from pneutouch.units import KPA
+from tests.bench.blocks import blocks_of
 
 RATE = 100.0
 TRUTH = SimulationTruth(rest=10.0)

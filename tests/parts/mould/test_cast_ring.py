@@ -21,13 +21,14 @@ from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.pieces import silicone
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView
 from pneutouch.report.mould import mould_rows, mould_section
 from pneutouch.workflows.build import exploded
 from tests.parts.mould.random_moulds import checked, random_moulds
+from tests.parts.overlap import overlap_volume
 
 CAST = {
     "membrane": {"material": "DragonSkin20"},

@@ -21,10 +21,11 @@ from pneutouch.parts.mould.filling import filling, release_of
 from pneutouch.parts.mould.pieces import core, lay_out_mould, mould_solids, ring, screw_places
 from pneutouch.parts.mould.size import SCREW
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
 from pneutouch.shape.meridian import Arc, Line, Meridian
 from pneutouch.units import ML
 from tests.parts.mould.random_moulds import checked, random_moulds
+from tests.parts.overlap import overlap_volume
 from tests.parts.space import measured_volume
 
 CAST = {"membrane": {"material": "DragonSkin20"}, "print": {"profile": "silicone-casting"}}

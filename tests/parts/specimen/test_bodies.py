@@ -11,7 +11,8 @@ from pneutouch.parts.specimen import Box, complement
 from pneutouch.parts.specimen.family import joined
 from pneutouch.parts.specimen.struts import STRUTS
 from pneutouch.parts.specimen.surfaces import SURFACES
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
+from tests.parts.overlap import overlap_volume
 from tests.parts.specimen.shapes import STEP, body, context, drawn
 
 FRACTIONS = {

@@ -13,11 +13,12 @@ import pytest
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.export.threemf import read_strictly
-from pneutouch.printability.rules.bodies import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import shared_area
 from pneutouch.spec.read import read_toml
 from pneutouch.workflows.specimen.build import build_specimen, check_specimen
 from pneutouch.workflows.specimen.draw import draw, load_specimen
 from tests.conftest import ROOT
+from tests.parts.overlap import overlap_volume
 
 LIBRARY = Library((ROOT,))
 NAME = "texture-specimen"

@@ -134,11 +134,6 @@ def _parted(view: PrintView, joint: Joint) -> list[Finding]:
     return [Finding("contact faces", "error", joint.one, text, fix, _SOURCE, joint.where, excess)]
 
 
-def overlap_volume(one: Body, other: Body) -> float:
-    """Volume in mm3 that both bodies occupy."""
-    return float((one.manifold() ^ other.manifold()).volume())
-
-
 def shared_area(one: Body, other: Body) -> float:
     """Area in mm2 of the triangles that both bodies have, facing in opposite directions."""
     first, second = _whole(one), _whole(other)

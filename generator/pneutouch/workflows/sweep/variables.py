@@ -120,6 +120,7 @@ _LIMIT_ERROR = "known error of the limit pressure; unknown: NaN"
 _BASIS = "basis of the error of the sensitivity"
 
 POINT: tuple[SweepVariable, ...] = (
+    SweepVariable("model", "", "model that answered; empty if no state is ok", _at("model"), True),
     _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
     _number("break_strain_kPa", "kPa", _TEAR, "limits", "break_strain_kPa"),
     _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
