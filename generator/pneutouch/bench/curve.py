@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.excursions import Excursion, smoothed
-from pneutouch.bench.first_contact import BEFORE, Baseline, baseline
+from pneutouch.bench.first_contact import BEFORE, Baseline, baseline, step_share
 from pneutouch.bench.indents import RunIndentations, find_indents
 from pneutouch.bench.record import BLOCK_ARRAYS, Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
 from pneutouch.bench.run_warnings import (
@@ -87,7 +87,8 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
         indents=indents,
         loop=tuple(_cycle(blocks, indentations, k) for k in kept) if turns else (),
         relaxation=_relaxation(blocks, indentations, kept[0]) if run.kind == "relaxation" else None,
-        noise=(_noise(bases, 0), _noise(bases, 1)),
+        noise=(_noise(bases, 0, blocks.steps[0]), _noise(bases, 1, blocks.steps[1])),
+        step_error=step_share(blocks, bases) * float(np.abs(points[1]).max()) / math.sqrt(12),
         drift=_drift(blocks, indentations),
         onset_error=indentations.onset_error,
         shows=shows,
@@ -129,7 +130,7 @@ def _no_contact(blocks: Blocks, indentations: RunIndentations) -> str:
     if not indentations.parts:
         span = f"from {blocks.position.min():.4g} to {blocks.position.max():.4g} mm"
         return f"{blocks.file}: no contact: the plate never goes in and out; {span}"
-    noise = _noise(indentations.bases, 0)
+    noise = _noise(indentations.bases, 0, blocks.steps[0])
     over = max(
         float(np.abs(blocks.force[one.clear[1] : one.hold[1]] - base.mean[0]).max())
         for one, base in zip(indentations.parts, indentations.bases, strict=True)
@@ -242,8 +243,9 @@ def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]
     return base.slope[1], math.sqrt(slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf
 
 
-def _noise(bases: Sequence[Baseline], channel: int) -> float:
-    """Noise of a channel (0 force, 1 pressure): scatter of samples about a straight line, pooled over stretches."""
+def _noise(bases: Sequence[Baseline], channel: int, step: float) -> float:
+    """Noise of a channel (0 force, 1 pressure): scatter of samples about a straight line, pooled over stretches; at
+    least that of rounding to its ``step``."""
     count = np.array([max(base.end - base.start - 2, 1) for base in bases], float)
     variance = np.array([base.between[channel] + base.within[channel] for base in bases])
-    return float(np.sqrt(count @ variance / count.sum()))
+    return max(float(np.sqrt(count @ variance / count.sum())), step / math.sqrt(12))

@@ -1,5 +1,6 @@
 """Figures of single runs, by the same `mechanics.response` as those of predictions, and pooled over groups of runs."""
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -329,12 +330,14 @@ def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estima
 
 
 def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
-    """Stiffness of the only run, with the interval from its first contact's standard error if it is known."""
+    """Stiffness of the only run, with the interval from the standard errors of its first contact, if known, and of a
+    force read in coarse steps."""
     pressed = (curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1]))
     curve = next(pressed, None)
     if curve is None or not np.isfinite(curve.onset_error):
         return estimate
-    half = COVERED * abs(estimate.value) * curve.onset_error / float(curve.indentation[-1])
+    shares = curve.onset_error / float(curve.indentation[-1]), curve.step_error / float(np.abs(curve.force).max())
+    half = COVERED * abs(estimate.value) * math.hypot(*shares)
     return replace(estimate, low=estimate.value - half, high=estimate.value + half, over="samples")
 
 

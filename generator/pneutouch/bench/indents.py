@@ -9,7 +9,18 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.excursions import Excursion, excursions, kind_of
-from pneutouch.bench.first_contact import BEFORE, Baseline, ContactOnset, baseline, first_baseline, onsets, threshold
+from pneutouch.bench.first_contact import (
+    BEFORE,
+    COARSE,
+    Baseline,
+    ContactOnset,
+    baseline,
+    first_baseline,
+    onsets,
+    showing_contact,
+    step_share,
+    threshold,
+)
 from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation
 from pneutouch.spec.campaign import RunKind
 
@@ -126,6 +137,11 @@ BIAS = 0.02
 """Bias of a first contact, mm, included in its interval as a standard error: half of the bias tested for a dome."""
 
 
+FREE = 0.02
+"""Least travel before first contact, as a share of the deepest indentation: our choice. Where the plate begins to move
+and the force to rise at one place, the sensor may have been pressed before."""
+
+
 @dataclass(frozen=True, slots=True)
 class RunIndentations:
     """The indentations of a run, with the stretches behind them, in order of time.
@@ -139,6 +155,8 @@ class RunIndentations:
         sign: -1 where the force falls as the sensor is pressed.
         least: Least force that counts as contact, N.
         onset: Plate position at the run's first contact, mm; NaN if there is none.
+        coarse: Step in which the channel that shows first contact is read, as a share of its greatest change.
+        free: Travel before the first contact, mm.
     """
 
     parts: list[Excursion]
@@ -149,10 +167,20 @@ class RunIndentations:
     sign: int
     least: float
     onset: float
+    coarse: float = 0.0
+    free: float = math.inf
+
+    @property
+    def hidden(self) -> bool:
+        """True if the place of `onset` is not known: read in too coarse steps, or without free travel before it."""
+        deepest = max((one.indentation for one in self.indents if one.indentation > 0), default=0.0)
+        return self.coarse > COARSE or self.free < FREE * deepest
 
     @property
     def onset_error(self) -> float:
-        """Standard error of `onset`, mm, as of one contact, as all share a fitted shape; infinite without one."""
+        """Standard error of `onset`, mm, as of one contact, as all share a fitted shape; infinite if not known."""
+        if self.hidden:
+            return math.inf
         errors = [one.error for one in self.contacts if one is not None and one.fitted][:EARLY]
         return math.hypot(BIAS, float(np.median(errors))) if errors else math.inf
 
@@ -170,7 +198,8 @@ def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
         return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)
     bases = [first_baseline(blocks, one) for one in parts]
     least, sign = threshold(blocks, bases, parts)
-    contacts = onsets(blocks, parts, bases, least, sign)
+    seen, levels = (blocks, bases) if by_hand else showing_contact(blocks, bases)
+    contacts = onsets(seen, parts, levels, *threshold(seen, levels, parts))
     bases = [_just_before(blocks, base, contact) for base, contact in zip(bases, contacts, strict=True)]
     fitted = [contact.position for contact in contacts if contact is not None and contact.fitted][:EARLY]
     onset = float(np.median(fitted)) if fitted else math.nan
@@ -178,7 +207,10 @@ def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
         _indent(blocks, one, base, contact, onset, (least, sign))
         for one, base, contact in zip(parts, bases, contacts, strict=True)
     )
-    return RunIndentations(parts, bases, contacts, indents, pressed, sign, least, onset)
+    first = next((one for one, contact in zip(parts, contacts, strict=True) if contact is not None), None)
+    free = math.inf if first is None or by_hand else onset - float(blocks.position[slice(*first.clear)].min())
+    coarse = 0.0 if by_hand else step_share(seen, levels)
+    return RunIndentations(parts, bases, contacts, indents, pressed, sign, least, onset, coarse, free)
 
 
 def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:

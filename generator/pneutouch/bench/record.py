@@ -33,7 +33,7 @@ class Blocks:
 
     ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them,
     ``first_row`` the row of the file (the header is row 1) with which each block begins. ``rate`` is the sampling rate
-    of the file, Hz."""
+    of the file, Hz; ``steps`` the least changes between two of its samples of force and pressure, 0 without any."""
 
     file: Path
     rate: float
@@ -48,6 +48,7 @@ class Blocks:
     force_extreme: Array
     pressure_extreme: Array
     warnings: tuple[SuspectInterval, ...] = ()
+    steps: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +95,7 @@ class MeasuredCurve:
         relaxation: For a relaxation run: seconds since the hold began, force, rise.
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN if
             not known.
+        step_error: Standard error of a force by the steps in which it is read, N; 0 where noise covers them.
         drift: Slope of the pressure before the first contact, MPa/s, and its standard error.
         onset_error: Standard error of the place of first contact, mm; infinite if it is not known.
         shows: Kind of run that the plate's travel shows, whatever the campaign states.
@@ -110,6 +112,7 @@ class MeasuredCurve:
     loop: tuple[tuple[Array, Array, Array, Array], ...] = ()
     relaxation: tuple[Array, Array, Array] | None = None
     noise: tuple[float, float] = (float("nan"), float("nan"))
+    step_error: float = 0.0
     drift: tuple[float, float] = (float("nan"), float("nan"))
     onset_error: float = float("inf")
     shows: RunKind = "steps"
@@ -184,8 +187,9 @@ _EXTREMES = ("force_spread", "pressure_spread", "force_extreme", "pressure_extre
 BLOCK_ARRAYS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES)
 """Fields of `Blocks` in the order of the averaged rows."""
 
-_ROUNDING = 1e-6
-"""Share of a block by which rounding may move a time before the beginning of its block."""
+_ROUNDING, _ROUNDED = 1e-6, 1e-9
+"""Share of a block by which rounding may move a time before the beginning of its block; relative difference up to which
+two samples hold the same number."""
 
 
 @dataclass
@@ -207,6 +211,7 @@ class BlockCollector:
     _samples: int = 0
     _missed: list[tuple[float, float, int]] = field(default_factory=list)
     _short: list[int] = field(default_factory=lambda: [0, 0, 0])
+    _steps: Array = field(default_factory=lambda: np.full(2, np.inf))
 
     def take(self, rows: Array, samples: Array) -> None:
         """Take samples (4, n) and their rows (n,). Raises InputError if time rises too little or not at all."""
@@ -229,6 +234,9 @@ class BlockCollector:
             usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
             self.size = max(usual, -(-self.total // MOST_BLOCKS))
         self._find_missed(time)
+        change = np.abs(np.diff(samples[2:]))
+        real = change > _ROUNDED * np.abs(samples[2:]).max(axis=1, keepdims=True)
+        self._steps = np.minimum(self._steps, change.min(axis=1, initial=np.inf, where=real))
         self._samples, self._last = self._samples + time.size, float(time[-1])
         self._average(np.concatenate([self._held, np.vstack([rows, samples])], axis=1))
 
@@ -293,7 +301,9 @@ class BlockCollector:
                 remedy=f"column {self.names['time']} must be that of one recording",
             )
         columns = dict(zip(BLOCK_ARRAYS, np.concatenate(self._parts, axis=1), strict=True))
-        return Blocks(self.file, self.rate, self.size, warnings=(*self._gaps(), *warnings), **columns)
+        force, pressure = np.where(np.isfinite(self._steps), self._steps, 0.0).tolist()
+        warned = (*self._gaps(), *warnings)
+        return Blocks(self.file, self.rate, self.size, warnings=warned, steps=(force, pressure), **columns)
 
     def _gaps(self) -> list[SuspectInterval]:
         warnings = [

@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.excursions import NEAR, Excursion
-from pneutouch.bench.first_contact import Baseline, baseline
+from pneutouch.bench.first_contact import COARSE, Baseline, baseline, step_share
 from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, read_window
 from pneutouch.bench.record import Blocks, MeasuredIndentation, SuspectInterval, SuspectKind
 from pneutouch.spec.campaign import CampaignRun
@@ -86,7 +86,27 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
     if not turns:
         warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
     # By hand the stretch before contact is found by the force itself, and ends a little late for a slope.
-    return warnings if run.kind == "hand" else warnings + _leak(blocks, indentations)
+    return warnings if run.kind == "hand" else warnings + _leak(blocks, indentations) + _place(blocks, indentations)
+
+
+def _place(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
+    """Doubt about the place of first contact: hidden by the steps of the channels, or by a plate that is not clear."""
+    if indentations.bases and step_share(blocks, indentations.bases) > COARSE:
+        why = f"the force is read in steps of {blocks.steps[0]:.2g} N; first contact is found by the pressure"
+        if indentations.hidden:
+            why = (
+                f"first contact is hidden by steps of {blocks.steps[0]:.2g} N and {blocks.steps[1] / KPA:.2g} kPa, and "
+                "figures over travel are uncertain by more than 2 %: can the instruments be set to a finer range?"
+            )
+    elif indentations.hidden:
+        why = (
+            f"the plate moves {max(indentations.free, 0.0):.2g} mm before the force rises, so first contact was not "
+            "seen: was the sensor pressed already? Start the recording, and zero force and gauge, clear of the dome"
+        )
+    else:
+        return []
+    kind: SuspectKind = "asked" if indentations.hidden else "other"
+    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, kind)]
 
 
 def _of_one(

@@ -28,31 +28,9 @@ _WORDS = {
 _ENDINGS = {"kraft": "force", "weg": "position", "zeit": "time", "druck": "pressure"}
 """Last parts of German compounds, such as Standardkraft."""
 
-_OTHER_QUANTITIES = frozenset(
-    {
-        "rate",
-        "speed",
-        "velocity",
-        "geschwindigkeit",
-        "setpoint",
-        "sp",
-        "sollwert",
-        "target",
-        "command",
-        "demand",
-        "limit",
-        "absolute",
-        "abs",
-        "ambient",
-        "atmospheric",
-        "barometric",
-        "baro",
-        "stress",
-        "spannung",
-        "modulus",
-        "cycle",
-        "cycles",
-    }
+_OTHER_QUANTITIES = (
+    "rate speed velocity geschwindigkeit setpoint sp sollwert target command demand limit "
+    "absolute abs ambient atmospheric barometric baro stress spannung modulus cycle cycles"
 )
 """Words in a header that exclude its column, whatever its unit: no measured force or gauge pressure."""
 
@@ -99,7 +77,7 @@ def meaning_of(name: str, unit: str = "") -> HeaderMeaning:
     if known is None and not unit.strip() and unit_of(name.strip()):
         return HeaderMeaning("", *_both(name))
     words = [word.lower() for word in _SPLIT.findall(label)]
-    odd = (bool(stated.strip("()[] -")) and known is None) or any(word in _OTHER_QUANTITIES for word in words)
+    odd = (bool(stated.strip("()[] -")) and known is None) or any(word in _OTHER_QUANTITIES.split() for word in words)
     return HeaderMeaning(_channel(label, words), *(known or ("", "")), odd)
 
 

@@ -58,6 +58,41 @@ def test_every_figure_is_that_of_the_truth(name, tmp_path):
     )
 
 
+def rounded(force, pressure=None):
+    """Channels read in steps of so many N and kPa."""
+
+    def coarse(samples):
+        for row, step in ((2, force), (3, pressure)):
+            samples[row] = samples[row] if step is None else np.round(samples[row] / step) * step
+        return samples
+
+    return coarse
+
+
+@pytest.mark.parametrize("step", [0.1, 0.2, 0.5])
+@pytest.mark.parametrize("name", ["triangular", "stairs with return"])
+def test_a_force_in_coarse_steps_gives_the_stiffness_of_the_truth(name, step, tmp_path):
+    """Its first step lies up to 1.5 mm inside the dome, wherever its zero falls in a step: the pressure has the contact."""
+    value = true_figures(READ[name].at())["stiffness_N_per_mm"]
+    for share in (0.0, 0.26, 0.7):
+        measured = read(tmp_path, replace(READ[name], tare=share * step, spoil=rounded(step)))
+        figure = figures(measured)["stiffness_N_per_mm"]
+        assert figure.value == pytest.approx(value, rel=0.02) and figure.low <= value <= figure.high
+        assert any("steps" in warning.why for warning in measured.runs[0].warnings) and not measured.questions
+
+
+def test_steps_that_hide_first_contact_in_both_channels_are_asked_about_and_leave_no_interval(tmp_path):
+    measured = read(tmp_path, replace(READ["steps"], spoil=rounded(0.5, 1.0)))
+    assert asked(measured, "steps of 0.5 N", "1 kPa")
+    figure = figures(measured)["stiffness_N_per_mm"]
+    assert figure.low is None and figure.high is None
+
+
+def test_a_noise_of_rounding_alone_is_that_of_the_step(tmp_path):
+    found = figures(read(tmp_path, replace(READ["steps"], spoil=rounded(0.5))))
+    assert found["noise_force_N"].value == pytest.approx(0.5 / np.sqrt(12), rel=1e-6)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.02, 0.15])
 def test_the_stiffness_of_one_run_has_an_interval_that_holds_the_truth(noise, tmp_path):
@@ -167,6 +202,14 @@ def test_a_record_zeroed_inside_the_dome_is_refused_with_the_place(start, presse
         legs = [leg for depth in np.linspace(start + 0.5, DEEP, 7) for leg in ((0.3, depth), (4.0, depth))]
     (failure,) = read(tmp_path, zeroed_at(start, legs)).failures
     assert re.findall(r"([\d.]+) mm inside", failure.message) == [f"{start:.2g}"]
+
+
+@pytest.mark.parametrize("start", [0.3, 0.4])
+def test_a_record_zeroed_just_inside_the_dome_is_asked_about_and_has_no_interval(start, tmp_path):
+    measured = read(tmp_path, zeroed_at(start, 2 * [(5.0, DEEP), (5.0, start), (2.0, start)]))
+    assert asked(measured, "before the force rises", "clear of the dome")
+    figure = figures(measured)["stiffness_N_per_mm"]
+    assert figure.low is None and figure.high is None
 
 
 @pytest.mark.parametrize("factors", [(1.4, 1.4), (2.0, 1.4), (2.5, 1.2), (1.2, 1.4)])
