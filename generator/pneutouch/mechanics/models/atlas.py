@@ -55,6 +55,10 @@ SHALLOW, _LEAST_DEPTH = 0.2, 0.1
 """Range in R0 below which the table may exceed `TABULATION`, and least depth of a press; sensitivities of 300 random
 domes are up to 0.36 % off over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (tests/mechanics/atlas/test_short_ranges.py)."""
 
+_RESOLVED = 0.02
+"""Travel in R0 up to which the table's error, up to 0.02 N and 0.02 kPa in the paper's resins, may exceed the force
+and rise (tests/mechanics/atlas/test_short_ranges.py)."""
+
 _TOO_SHALLOW = Limitation(
     f"the range ends within {SHALLOW:g} R0 of first contact, where the table is up to 25% off", False, beyond_error=True
 )
@@ -147,6 +151,8 @@ def _state(
     depth = (press.apex[i] - whole.height[i, known]) * length
     range_end = float(np.nan_to_num(response.range_end[i]))
     line = Figures(*(float(column[i]) for column in response.lines))
+    pressed = (values[i, known] for values in (whole.point.force, whole.point.pressure - press.pressure[:, None]))
+    force, rise = (_begun(depth / length, values) * mu for values in pressed)
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]),
         apex_inner=float(field["inner_apex"][0]) * length,
@@ -155,13 +161,24 @@ def _state(
         range_end=range_end,
         figures=line if range_end > 0 and line.force_high > line.force_low else None,
         indentation=depth,
-        force=whole.point.force[i, known] * mu * length**2,
-        pressure_rise=(whole.point.pressure[i, known] - press.pressure[i]) * mu,
+        force=force * length**2,
+        pressure_rise=rise,
         contact_radius=np.maximum(field["contact_radius"], 0.0) * length,
         max_stretch=field["stretch"],
         events=tuple(_events(depth, field, int(response.ends[i]), range_end)),
         max_von_mises=field["von_mises"] * mu,
     )
+
+
+def _begun(travel: Array, values: Array) -> Array:
+    """Force or rise (m,) at travels in R0; up to `_RESOLVED` the power from the origin through the states beyond it."""
+    first, later = np.searchsorted(travel, (_RESOLVED, 2 * _RESOLVED))
+    if first == travel.size:
+        return values
+    ends = slice(first, later + 1, max(later - first, 1))
+    known, at = np.maximum(values[ends], 1e-300), travel[ends]
+    power = np.log(known[-1] / known[0]) / np.log(at[-1] / at[0]) if at.size > 1 else 1.0
+    return np.append(known[0] * (travel[:first] / at[0]) ** np.clip(power, 1.0, 2.0), values[first:])
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
