@@ -66,7 +66,7 @@ class PneutouchError(Exception):
             equals = "" if not place else " = " if not known else "=" if " " in known else " "
             place = f"{place}{equals}{_typed(self.value) if known else shown(self.value)}"
         text = self.problem if not self.remedy else f"{self.problem}; {self.remedy}"
-        text = re.sub(r"`(\w+)`", lambda name: option(name[1]) or name[0], text)
+        text = re.sub(r"`([\w.]+)`", lambda name: option(name[1]) or name[0], text)
         first = ": ".join(
             part for part in (_escaped(self.file or ""), _escaped(place), _escaped(text, keep="\n")) if part
         )

@@ -83,7 +83,7 @@ def test_a_right_run_is_left_alone(tmp_path, samples):
         ("pressure", "Pa", "Pa"),
         ("pressure", "psi", "psi"),
         ("pressure", "MPa", "MPa"),
-        ("pressure", "hPa", "hPa or mbar"),
+        ("pressure", "hPa", 'hPa" or "mbar'),
         ("pressure", "mmHg", "mmHg"),
         ("position", "um", "um"),
         ("position", "m", "m"),
@@ -103,7 +103,8 @@ def test_every_wrong_unit_is_identified(tmp_path, samples, key, unit, units):
     with pytest.raises(InputError) as caught:
         check_plausible(curve, COLUMNS, EXPECTED, path)
     assert str(caught.value).startswith(f"{path}: column {name}: ")
-    assert f"is the column in {units}? set columns.{key}.unit" in str(caught.value)
+    assert f'its unit looks like "{units}"' in str(caught.value)
+    assert caught.value.remedy.startswith(f"give `columns` {key}={name}:{unit}, or in a campaign")
     right = declared(**{key: unit})
     result = curve_of(run_of(), read_blocks(identify(path, right, PLATE), RIG), RIG)
     assert check_plausible(result, right, EXPECTED, path) == ()
@@ -115,14 +116,14 @@ def test_the_message_has_the_numbers(tmp_path):
         check_plausible(curve, COLUMNS, ExpectedRun(6.9, 4.2, 11 * KPA), Path("run.csv"))
     words = str(caught.value)
     assert words == (
-        "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; is the column in mN? "
-        "set columns.force.unit"
+        "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; its unit looks like "
+        '"mN"; give `columns` force=force_N:mN, or in a campaign set columns.force.unit = "mN"'
     )
 
 
 def test_time_in_milliseconds_is_identified(tmp_path, samples):
     slow = samples * np.array([[1e3], [1], [1], [1]])
-    refused(tmp_path, slow, "column time_s", "holds last 2.4e+03 s", "is the column in ms? set columns.time.unit")
+    refused(tmp_path, slow, "column time_s", "holds last 2.4e+03 s", 'looks like "ms"', "time=time_s:ms")
 
 
 def test_what_no_unit_explains_is_a_question_with_its_keys():
@@ -137,7 +138,7 @@ def test_far_from_the_prediction_a_unit_explains_a_reading_that_it_brings_near(t
     expected = ExpectedRun(6.9, float(SENSOR.force(6.9)), SENSOR.slope * float(SENSOR.force(6.9)))
     with pytest.raises(InputError) as caught:
         check_plausible(ideal(factor=(1, times, 1)), COLUMNS, expected, Path("run.csv"))
-    assert f"is the column in gf, {left} the prediction then? set columns.force.unit" in str(caught.value)
+    assert f'its unit looks like "gf", {left} the prediction then' in str(caught.value)
 
 
 @pytest.mark.parametrize("times", [0.03, 0.06])
@@ -230,7 +231,7 @@ def test_runs_alike_and_other_sensors_are_left_alone(factors):
 
 def test_a_sign_that_was_turned_is_turned_back_by_leaving_the_minus_out():
     turned = ColumnMap.model_validate({"force": {"name": "force_N", "unit": "N", "sign": -1}})
-    with pytest.raises(InputError, match=r"set columns\.force\.sign = 1 \(in `columns` leave out the minus"):
+    with pytest.raises(InputError, match=r"give `columns` force=force_N:N, or .* columns\.force\.sign = 1"):
         check_plausible(ideal(factor=(1, -1, 1)), turned, None, Path("run.csv"))
 
 
@@ -246,7 +247,7 @@ def test_signs_are_checked_without_a_prediction(factor, words):
 def test_without_a_prediction_time_and_driving_pressure_are_checked_and_magnitudes_not(tmp_path, samples):
     assert analyse(tmp_path, samples, expected=None) == ()
     assert check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, None, Path("run.csv")) == ()
-    refused(tmp_path, samples * np.array([[1e3], [1], [1], [1]]), "is the column in ms?", expected=None)
+    refused(tmp_path, samples * np.array([[1e3], [1], [1], [1]]), 'looks like "ms"', expected=None)
     (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=14 * KPA), expected=None)
     assert "driving_pressure_kPa = 14" in words
 

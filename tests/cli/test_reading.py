@@ -203,7 +203,7 @@ def test_a_minus_turns_the_sign(tmp_path, recording):
         tmp_path,
     ]
     refused = run(*words)
-    assert refused.exit_code == 3 and "in --columns a minus before the name turns the sign" in refused.stderr
+    assert refused.exit_code == 3 and "give --columns force=-load_g:gf" in refused.stderr
     assert run(*words, "--columns", "force=-load_g").exit_code == 0
 
 

@@ -18,8 +18,9 @@ from pneutouch.output.files import digest, json_bytes
 from pneutouch.parts import assemble
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun
+from pneutouch.spec.options import CalibrationOptions
 from pneutouch.units import KPA
-from pneutouch.workflows.calibrate.calibrate import with_further_tests
+from pneutouch.workflows.calibrate.calibrate import run_calibration, with_further_tests
 from pneutouch.workflows.calibrate.calibration_files import (
     CampaignSource,
     calibration_content,
@@ -32,6 +33,7 @@ from pneutouch.workflows.calibrate.calibration_files import (
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
 from pneutouch.workflows.compare import compare
 from tests.bench.calibrate.sensors import curves, injections, softer
+from tests.bench.recordings import READ
 from tests.refusals import refused
 
 SOURCE = CampaignSource("ab" * 32)
@@ -260,3 +262,15 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
         observations_of(campaign(held), [], [(held, np.ones(3), np.ones(3))], scene)
     _, _, remarks = observations_of(campaign(curve.run.model_copy(update={"resin": "FLX9950"})), [curve], [], scene)
     assert "states A to be of FLX9950, the design states TangoPlus" in remarks[0]
+
+
+def test_absolute_pressures_are_those_over_the_ambient_one_of_the_campaigns_design(tmp_path):
+    recording = replace(READ["steps"], ambient=90.0)
+    (tmp_path / "run.csv").write_text(recording.text())
+    (tmp_path / "campaign.toml").write_text(
+        'design = "paper-dome"\nassignments = ["pneumatics.ambient_pressure_kPa=90"]\n'
+        '[columns]\npressure = { name = "pressure_kPa", unit = "kPa_abs" }\n'
+        '[[runs]]\nfile = "run.csv"\nsensor = "A1"\nkind = "steps"\n'
+    )
+    outcome = run_calibration(tmp_path, None, CalibrationOptions(), tmp_path / "out", root=tmp_path)
+    assert not any("before contact" in note for note in outcome.record.notes)

@@ -21,6 +21,7 @@ from pneutouch.bench.run_warnings import (
     slope_variance,
     untrusted,
 )
+from pneutouch.bench.source import turned
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, Rig, RunKind
 
@@ -117,11 +118,12 @@ def _by_force(blocks: Blocks) -> Blocks:
             remedy='a leak? give `kind` "leak"',
         )
     rest = float(np.median(blocks.force[: max(blocks.force.size // 50, 3)]))
-    if rest - float(blocks.force.min()) > float(blocks.force.max()) - rest:
+    fall = rest - float(blocks.force.min())
+    if fall > float(blocks.force.max()) - rest:
         raise InputError(
-            f"column of the force: falls by {rest - float(blocks.force.min()):.3g} N as the sensor is pressed",
+            f"column {blocks.columns.force.name}: falls by {fall:.3g} N as the sensor is pressed",
             file=blocks.file,
-            remedy="it must rise: set columns.force.sign, or give `columns` with a minus before its name",
+            remedy=f"it must rise: {turned(blocks.columns, 'force')}",
         )
     return replace(blocks, position=blocks.force)
 
@@ -138,7 +140,7 @@ def _no_contact(blocks: Blocks, indentations: RunIndentations) -> str:
     return (
         f"{blocks.file}: no contact: the force never leaves its noise: at most {over:.3g} N beyond what it is "
         f"without, with {noise:.3g} N of noise, in {len(indentations.parts)} indentations; did the plate reach the "
-        "sensor, is columns.force the right column?"
+        f"sensor, is {blocks.columns.force.name} the right column of the force?"
     )
 
 

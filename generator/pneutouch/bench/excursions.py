@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.record import Blocks
+from pneutouch.bench.source import turned
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import RunKind
 
@@ -79,7 +80,7 @@ def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tup
         raise InputError(
             f"position: the plate never moves: from {place.min():.4g} to {place.max():.4g} mm",
             file=blocks.file,
-            remedy="is columns.position the right column?",
+            remedy="is it the right column? `columns` names another, as position=NAME",
         )
     _check_direction(blocks, place, span)
     turns = _turns(place, max(2 * NOISE * noise, turn * span))
@@ -136,7 +137,7 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
             f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
             f"({place.max():.4g} mm)",
             file=blocks.file,
-            remedy="position must count into the sensor: invert columns.position.sign",
+            remedy=f"position must count into the sensor: {turned(blocks.columns, 'position')}",
         )
 
 

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.bench.record import Blocks, MeasuredCurve
+from pneutouch.bench.source import otherwise
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
+from pneutouch.tables.unit_words import ABSOLUTE as ABSOLUTE_UNIT
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 FAR = 3.0
@@ -85,8 +87,8 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(started, 1)])) / KPA, run.driving_pressure_kPa
     if looks_absolute(read_kPa - stated_kPa, _SURELY_ABSOLUTE):
         problem = f"a leak run that begins at {read_kPa:.4g} kPa, which looks like an absolute pressure"
-        remedy = "give `columns` the unit kPa_abs or mbar_abs, of which the ambient pressure is subtracted"
-        raise InputError(problem, file=blocks.file, remedy=remedy)
+        absolute = otherwise(blocks.columns, "pressure", "unit", f"{blocks.columns.pressure.unit}{ABSOLUTE_UNIT}")
+        raise InputError(problem, file=blocks.file, remedy=f"{absolute}, of which the ambient pressure is subtracted")
     if (swing := _swing(blocks)) is not None:
         questions.append(swing)
     lost = [warning for warning in blocks.warnings if warning.kind == "clipped"]
@@ -107,7 +109,7 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     problem = f"a leak run that begins at {read_kPa:.3g} kPa; {stated}"
     if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
         raise InputError(
-            f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?", file=blocks.file
+            f"{problem}; another unit of the pressure (`columns`), or another run's file?", file=blocks.file
         )
     return (*questions, f"{problem}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
 

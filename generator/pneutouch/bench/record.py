@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Indices
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import CampaignRun, RunKind
+from pneutouch.spec.campaign import CampaignRun, ColumnMap, RunKind
 
 SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "other"]
 
@@ -33,7 +33,8 @@ class Blocks:
 
     ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them,
     ``first_row`` the row of the file (the header is row 1) with which each block begins. ``rate`` is the sampling rate
-    of the file, Hz; ``steps`` the least changes between two of its samples of force and pressure, 0 without any."""
+    of the file, Hz; ``steps`` the least changes between two of its samples of force and pressure, 0 without any;
+    ``columns`` those that were read."""
 
     file: Path
     rate: float
@@ -49,6 +50,7 @@ class Blocks:
     pressure_extreme: Array
     warnings: tuple[SuspectInterval, ...] = ()
     steps: tuple[float, float] = (0.0, 0.0)
+    columns: ColumnMap = field(default_factory=ColumnMap)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from pneutouch.arrays import Array
 from pneutouch.bench.indents import HOLD, RELAXATION
 from pneutouch.bench.questions import FAR, RESET_KPA, RESET_SHARE, looks_absolute, number, run_questions
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.errors import InputError
+from pneutouch.bench.source import exchanged, otherwise, turned
+from pneutouch.errors import InputError, shown
 from pneutouch.spec.campaign import ColumnMap
 from pneutouch.tables.unit_words import ABSOLUTE as ABSOLUTE_UNIT
 from pneutouch.tables.unit_words import UNITS
@@ -39,15 +40,9 @@ compared; relative distances from the prediction below which it is met and above
 _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
-_MINUS = {
-    1: " (in `columns` a minus before the name turns the sign)",
-    -1: " (in `columns` leave out the minus before the name)",
-}
-"""Hints on turning a sign in the syntax of `workflows.characterize.parse_columns`, by the stated sign."""
-
 _HOLD_FAR = 50.0
-_WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
-_WHY_LEAK = "a leak, a dead volume that is not given (pneumatics.dead_volume_mL), another resin or design?"
+_WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
+_WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
 _SHAPE = 1.5
@@ -113,9 +108,9 @@ def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file:
         f"columns {columns.force.name} and {columns.pressure.name}: the pressure rises by {number(measured / KPA)} "
         f"kPa at {number(reach)} N where the prediction has {number(target / KPA)} kPa"
     )
-    why = "are they swapped, or is the unit of one of them another (columns.force.unit, columns.pressure.unit)"
+    why = "are they swapped, or is the unit of one of them another (`columns`; in a campaign columns.force.unit)"
     if 1 / BEYOND <= ratio <= BEYOND:
-        return f"{problem}: {why}, or the resin (runs.resin) or design (design)?"
+        return f"{problem}: {why}, or is it {_WHY}"
     raise InputError(f"{problem}; {why}?", file=file)
 
 
@@ -153,10 +148,11 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
     off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in gauges.items()}
     nearest = min(off, key=lambda unit: off[unit])
     if nearest != column.unit.removesuffix(ABSOLUTE_UNIT) and off[nearest] < math.log(near):
-        same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
+        same = " or ".join(shown(unit) for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
         is_exact = off[nearest] < math.log(UNIT_NEAR)
         then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
-        raise InputError(f"{problem}; is the column in {same}{then}? set columns.{key}.unit", file=file)
+        right = otherwise(columns, key, "unit", nearest)
+        raise InputError(f"{problem}; its unit looks like {same}{then}", file=file, remedy=right)
     why = _WHY_LEAK if key == "pressure" and ratio < 1.0 else _WHY_TIME if key == "time" else _WHY
     return f"{problem}; no unit explains that: {why}"
 
@@ -169,14 +165,13 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
             raise InputError(
                 f"column {column.name}: falls by {number(-deep / unit)} {name} as the sensor is pressed",
                 file=file,
-                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}{_MINUS[column.sign]}",
+                remedy=f"it must rise: {turned(columns, key)}",
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
             f"column {columns.position.name}: falls as the force rises",
             file=file,
-            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}"
-            f"{_MINUS[columns.position.sign]}",
+            remedy=f"it must count into the sensor: {turned(columns, 'position')}",
         )
 
 
@@ -251,7 +246,7 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
             f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
             f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}",
             file=file,
-            remedy="exchange columns.force.name and columns.pressure.name",
+            remedy=exchanged(columns, "force", "pressure"),
         )
 
 
@@ -283,8 +278,8 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"
     if looks_absolute(off_kPa):
         problem += ", which looks like an absolute pressure"
-        unit = f"{columns.pressure.unit}{ABSOLUTE_UNIT}"
-        remedy = f'set columns.pressure.unit = "{unit}", of which the ambient pressure is subtracted, or {set_so}'
+        absolute = otherwise(columns, "pressure", "unit", f"{columns.pressure.unit}{ABSOLUTE_UNIT}")
+        remedy = f"{absolute}, of which the ambient pressure is subtracted, or {set_so}"
     else:
-        remedy = f"name the right file, set columns.pressure.unit, subtract the gauge's zero in the file, or {set_so}"
+        remedy = f"name the right file, or the unit by `columns`, subtract the gauge's zero in the file, or {set_so}"
     raise InputError(problem, file=file, remedy=remedy)

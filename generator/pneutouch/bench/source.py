@@ -1,12 +1,13 @@
 """Columns of a measured file, found by their names: channel and unit of each, and the layout of the file."""
 
 import re
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.results.measured import ReadColumn, ReadTables
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
@@ -153,6 +154,35 @@ def campaign_lines(content: ReadTables, within: str = "") -> str:
         for name, table in (("format", content.format), ("columns", content.columns))
         if table is not None
     )
+
+
+def as_option(**columns: Column) -> str:
+    """Columns by channel as the option of a command: "give `columns` force=Load:N"."""
+    texts = (
+        f"{key}={'-' if one.sign < 0 else ''}{one.name}{f':{one.unit}' if one.unit else ''}"
+        for key, one in columns.items()
+    )
+    return f"give `columns` {shlex.quote(','.join(texts))}"
+
+
+def otherwise(columns: ColumnMap, key: str, field: str, value: str | int) -> str:
+    """Remedy that reads a channel with another unit or sign (``field``) of its column, as option and campaign key."""
+    option = as_option(**{key: getattr(columns, key).model_copy(update={field: value})})
+    return f"{option}, or in a campaign set columns.{key}.{field} = {shown(value)}"
+
+
+def turned(columns: ColumnMap, key: str) -> str:
+    """Remedy that reads a channel with the other sign."""
+    return otherwise(columns, key, "sign", -getattr(columns, key).sign)
+
+
+def exchanged(columns: ColumnMap, first: str, second: str) -> str:
+    """Remedy that reads two channels each from the column of the other."""
+    one, other = getattr(columns, first), getattr(columns, second)
+    names = {
+        key: to.model_copy(update={"name": by.name}) for key, to, by in ((first, one, other), (second, other, one))
+    }
+    return f"{as_option(**names)}, or in a campaign exchange columns.{first}.name and columns.{second}.name"
 
 
 def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: FileFormat = _ANY) -> MeasuredFile:

@@ -1,6 +1,6 @@
 """``pneutouch characterize``: measured runs turned into figures, compared with the predicted ones."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
@@ -21,6 +21,7 @@ from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
 from pneutouch.cli.terminal import bar, notify, report_next, set_words
+from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.campaign import Campaign, RunKind
 from pneutouch.wording import SIMULATED, counted, listed
 
@@ -78,7 +79,6 @@ def characterize(
 ) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
     with reporting():
-        from pneutouch.errors import InputError
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.workflows.characterize.campaign import characterize as run
         from pneutouch.workflows.characterize.campaign import write
@@ -90,11 +90,12 @@ def characterize(
             how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
             outcome = run(data, design, given, progress=progress, **how)
         folder = write(outcome, out, evidence)
-        print_written(outcome.figures, folder, measured_text, json=json)
+        named = partial(option, context.command)
+        print_written(outcome.figures, folder, partial(measured_text, named=named), json=json)
         if outcome.read_as:
             notify(reading_text(outcome.read_as))
         for files, message in same_failures(outcome.measured.failures):
-            words = InputError(message).message(partial(option, context.command))
+            words = InputError(message).message(named)
             notify(f"error: {files}: not used: {words}")
         if outcome.failed:
             raise typer.Exit(3)
@@ -106,7 +107,7 @@ def characterize(
 
 def _check(evidence: str, kind: str | None) -> None:
     """Raise InputError, which suggests the nearest name, if ``evidence`` or ``kind`` is no known one."""
-    from pneutouch.errors import InputError, nearest
+    from pneutouch.errors import nearest
     from pneutouch.workflows.characterize.campaign import EVIDENCE
 
     if evidence not in EVIDENCE:
@@ -144,8 +145,10 @@ _SHALLOWER = 0.01
 """Relative difference from the depth of `predict` up to which a measured depth is not mentioned."""
 
 
-def measured_text(measured: "MeasuredCampaign") -> str:
-    """A table for each group, measured figures with intervals and the prediction; then target, ageing and warnings."""
+def measured_text(measured: "MeasuredCampaign", named: Callable[[str], str | None] = lambda parameter: None) -> str:
+    """A table for each group, measured figures with intervals and the prediction; then target, ageing and warnings.
+
+    ``named`` gives the option for a parameter of the library."""
     head = f"{measured.title}: measured on {measured.design}, predicted by {measured.model}"
     lines = [head + (f"  {SIMULATED}" if measured.simulated else "")]
     for group in measured.groups:
@@ -165,7 +168,8 @@ def measured_text(measured: "MeasuredCampaign") -> str:
     if told:
         lines.append(f"\nkind of run, by the record: {listed(told, _NAMED)}")
     lines += _warnings(measured.runs)
-    lines += [f"\nquestion: {entry.file}: {entry.question} The run is used." for entry in measured.questions]
+    asked = [(entry.file, PneutouchError(entry.question).message(named)) for entry in measured.questions]
+    lines += [f"\nquestion: {file}: {words} The run is used." for file, words in asked]
     return "\n".join(lines)
 
 

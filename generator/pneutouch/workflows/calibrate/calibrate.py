@@ -21,7 +21,7 @@ from pneutouch.parts import assemble
 from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.record import extended
 from pneutouch.spec.calibration import SensorCalibration
-from pneutouch.spec.campaign import CAMPAIGN
+from pneutouch.spec.campaign import CAMPAIGN, campaign_of
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.options import CalibrationOptions
 from pneutouch.spec.read import parse_changes
@@ -101,14 +101,15 @@ def run_calibration(
     root = user_folder() if root is None else root
     if options.save is not None:
         check_place(options.save, root)
-    loaded = load_curves(data, progress=progress, reading=reading)
-    sensor = chosen_sensor(loaded.campaign, options.sensor)
-    design = design or known_design(loaded.campaign, loaded.folder, library)
+    campaign, folder = campaign_of(data)
+    design = design or known_design(campaign, folder, library)
     if design is None:
         raise InputError("names no design", file=data, remedy="give `design`")
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
-    changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
+    changes = {**parse_changes(campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
+    loaded = load_curves(data, scene, progress, reading)
+    sensor = chosen_sensor(loaded.campaign, options.sensor)
     check_fitted(scene, built := sensor_of(assemble(scene)))
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     model = "solid" if is_corrected(built) else "atlas"

@@ -207,7 +207,8 @@ def characterize(
     name, named = (design, {}) if design is not None else _design_of(data, library)
     request = None if target is None else validate(Target, read_toml(target), str(target))
     given = {**named, **(changes or {})}
-    loaded = load_curves(data, load_scene(name, given, library), progress, reading, kind)
+    scene = load_scene(name, given, library)
+    loaded = load_curves(data, scene, progress, reading, kind, of_the_day="pneumatics.ambient_pressure_kPa" in given)
     if loaded.campaign.ambient_pressure_kPa is not None:
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, library)

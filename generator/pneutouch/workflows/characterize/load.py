@@ -16,7 +16,7 @@ from pneutouch.bench.curve import curve_of
 from pneutouch.bench.questions import check_leak, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import Blocks, MeasuredCurve, Trace, trace
-from pneutouch.bench.source import MeasuredFile, MissingChannelError, campaign_lines, identify
+from pneutouch.bench.source import MeasuredFile, MissingChannelError, as_option, campaign_lines, identify
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.catalogue.library import example_remedy
 from pneutouch.errors import InputError, PneutouchError
@@ -214,11 +214,14 @@ def load_curves(
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
     kind: RunKind | None = None,
+    *,
+    of_the_day: bool = False,
 ) -> CampaignData:
     """Read a campaign's folder, its campaign file, or one file of a run; ``reading`` overrides the campaign.
 
     A single file has the ``kind`` given, else the one it shows, the resin of the design ``scene``, and that driving
-    pressure of the design which was read before contact. Raises InputError if the campaign itself is wrong, or none of
+    pressure of the design which was read before contact. ``of_the_day``: the ambient pressure of ``scene`` was stated
+    for these files, and precedes the campaign's. Raises InputError if the campaign itself is wrong, or none of
     its files can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
@@ -228,6 +231,9 @@ def load_curves(
     else:
         campaign, folder = _single(data, scene, kind), data.parent
     campaign = with_reading(campaign, reading)
+    if scene is not None and of_the_day:
+        ambient = {"ambient_pressure_kPa": scene.design.pneumatics.ambient_pressure_kPa}
+        campaign = campaign.model_copy(update=ambient)
     gathered = _Gathered()
     ambient_kPa = campaign.ambient_pressure_kPa
     if ambient_kPa is None:
@@ -306,7 +312,8 @@ def _read(
         return
     if source.columns.pressure.unit.endswith(ABSOLUTE) and campaign.ambient_pressure_kPa is None:
         said = f"the design's ambient pressure of {ambient / KPA:.6g} kPa is subtracted"
-        gathered.questions.append((run.file, f"{said}: was it that of the day (pneumatics.ambient_pressure_kPa)?"))
+        day = f"was it that of the day? State it by `pneumatics.ambient_pressure_kPa`={ambient / KPA:.6g}"
+        gathered.questions.append((run.file, f"{said}: {day}, or in a campaign by ambient_pressure_kPa"))
     blocks = read_blocks(source, campaign.rig, progress, ambient)
     if (first := gathered.much_of(run.file, blocks)) is not None:
         gathered.questions.append((run.file, f"most of its readings are those of {first}: is it a copy of that run?"))
@@ -384,11 +391,12 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gat
             f"{read_kPa:.4g} kPa before contact, which looks like an absolute pressure",
             file=curve.run.file,
             key=f"column {column.name}",
-            remedy=f"give `columns` pressure={column.name}:{unit}{ABSOLUTE}, of which the ambient pressure of "
-            "the design is subtracted",
+            remedy=as_option(pressure=column.model_copy(update={"unit": f"{unit}{ABSOLUTE}"}))
+            + ", of which the ambient pressure of the design is subtracted",
         )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
     if not near:
-        problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures"
-        gathered.questions.append((curve.run.file, f"{problem}: is the gauge zeroed, or state it in the design?"))
+        problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures: is the gauge zeroed?"
+        stated = f"`pneumatics.driving_pressures_kPa`={found_kPa:g}"
+        gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
     return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))
