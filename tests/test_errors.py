@@ -193,3 +193,20 @@ def test_words_and_lines_without_end_are_cut_and_control_characters_escaped():
     assert len(message) < 4100 and "x" * 401 not in message and "y" * 201 not in message
     assert "\\u001b[31m\\n" in message and "\x1b" not in message and "\n" not in message
     assert one_line("a\x1b\n\u202e" + "z" * 500) == "a\\u001B\\u000A\\u202E" + "z" * 181 + "..."
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("radius", "inner_radius_mm"),
+        ("diameter", "inner_radius_mm"),
+        ("wall", "wall_thickness_mm"),
+        ("thickness", "wall_thickness_mm"),
+        ("resin", "material"),
+        ("pressure", "driving_pressures_kPa"),
+    ],
+)
+def test_everyday_names_lead_to_the_fields_that_they_mean(name, key):
+    with pytest.raises(InputError) as caught:
+        pneutouch.Design(**{name: 6})
+    assert f" Did you mean {key}" in caught.value.problem

@@ -124,9 +124,26 @@ def joined(errors: Sequence[PneutouchError]) -> PneutouchError:
     return first
 
 
+_EVERYDAY = {
+    "diameter": "inner_radius_mm",
+    "plate": "plate_diameter_mm",
+    "pressure": "driving_pressures_kPa",
+    "pressures": "driving_pressures_kPa",
+    "radius": "inner_radius_mm",
+    "resin": "material",
+    "thickness": "wall_thickness_mm",
+    "wall": "wall_thickness_mm",
+}
+"""Keys by everyday names that others resemble more."""
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Hint ``" Did you mean X?"`` for a known word ending in ``_word``, or else similar to it; else the known words."""
+    """Hint ``" Did you mean X?"`` for a known word of that everyday name, ending in ``_word``, or similar to it; else
+    the known words."""
     words = list(known)
+    everyday = word.lower().removesuffix("_mm").removesuffix("_kPa")
+    if (key := _EVERYDAY.get(everyday)) in words:
+        return f" Did you mean {key}{', half of it' if everyday == 'diameter' else ''}?"
     if longer := [one for one in words if one.endswith(f"_{word}")]:
         return f" Did you mean {longer[0]}?"
     candidates = sorted(words)

@@ -33,7 +33,10 @@ def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
     force = [w for w in said["warnings"] if w["rule"] == "force range"]
     assert [w["driving_pressure_kPa"] for w in force] == [0, 5, 12, 22]
     for warning in said["warnings"]:
-        assert f"warning: {warning['rule']}: {warning['message']}" in result.stderr
+        message = (
+            warning["message"].replace("`rig`", "--rig").replace("`pneumatics.", "--set pneumatics.").replace("`", "")
+        )
+        assert f"warning: {warning['rule']}: {message}" in result.stderr
 
     text = run(*words[:-1]).stdout.split("\n\n" + str(tmp_path))[0].splitlines()
     rows = [re.split(" {2,}", row) for row in text[3 : text.index("", 3)]]

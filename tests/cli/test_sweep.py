@@ -91,7 +91,7 @@ def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_pa
     over = ["driving_pressure_kPa", "membrane_wall_thickness_mm"]
     pictures = [f"paper-dome-sweep-over-{name}.{kind}" for name in over for kind in ("png", "svg")]
     names = sorted(path.name for path in (tmp_path / "outputs").iterdir())
-    assert names == [*pictures, "paper-dome-sweep.csv", "paper-dome-sweep.nc"]
+    assert names == ["paper-dome-sweep-manifest.json", *pictures, "paper-dome-sweep.csv", "paper-dome-sweep.nc"]
     assert sorted(line.partition(": outputs/")[2] for line in written) == [*pictures, "paper-dome-sweep.csv"]
     before = {name: (tmp_path / "outputs" / name).read_bytes() for name in names}
     (tmp_path / "outputs/paper-dome-sweep.csv").unlink()
@@ -100,12 +100,13 @@ def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_pa
     assert {path.name: path.read_bytes() for path in (tmp_path / "outputs").iterdir()} == before
 
 
-TAKEN = {
-    "x.csv": "the table",
-    "x-over-membrane_wall_thickness_mm.svg": "a picture",
-    "x-over-membrane_wall_thickness_mm.png": "a picture",
-    "x-over-driving_pressure_kPa.png": "a picture",
-}
+TAKEN = (
+    "x.csv",
+    "x-over-membrane_wall_thickness_mm.svg",
+    "x-over-membrane_wall_thickness_mm.png",
+    "x-over-driving_pressure_kPa.png",
+    "x-manifest.json",
+)
 
 
 @pytest.mark.parametrize("fresh", [[], ["--fresh"]], ids=["", "fresh"])
@@ -115,9 +116,24 @@ def test_files_of_others_are_not_replaced(name, fresh, command, tmp_path):
     words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,1.5", "--model", "membrane"]
     result = command("sweep", *words, "--out", "x.nc", *fresh)
     assert result.returncode == 2
-    assert result.stderr.startswith(f"error: --out: {name} is in the place of {TAKEN[name]}; give another --out")
+    assert result.stderr.startswith(f"error: {name}: ") and "with --out" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "mine"
+
+
+def test_a_table_that_was_edited_is_not_replaced_and_an_unchanged_one_is(command, tmp_path):
+    words = ["sweep", "--design", "paper-dome", "--model", "membrane", "--out", "x.nc", "--fresh", "--over"]
+    for walls in ("1,1.5", "1,2"):
+        assert command(*words, f"membrane.wall_thickness_mm={walls}").returncode == 0
+    table = tmp_path / "x.csv"
+    table.write_text(table.read_text() + "my remark\n")
+    edited = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    for walls in ("1,2", "1,1.5"):
+        result = command(*words, f"membrane.wall_thickness_mm={walls}")
+        assert result.returncode == 2 and result.stderr.startswith("error: x.csv: ")
+        assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == edited
+    table.rename(tmp_path / "mine.csv")
+    assert command(*words, "membrane.wall_thickness_mm=1,1.5").returncode == 0
 
 
 def test_pictures_of_a_longer_name_are_in_no_place_of_this_one_s(command, tmp_path):

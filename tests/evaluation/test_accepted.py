@@ -61,3 +61,5 @@ def test_another_rule_or_no_reason_is_refused(library, key, value):
     with pytest.raises(InputError) as caught:
         load_scene("paper-dome", {f"accepted.{key}": value}, library)
     assert caught.value.key == f"accepted.{key}"
+    # A rule that is none of the print is refused with the reason.
+    assert ("driving" in caught.value.problem) == (value == REASON)

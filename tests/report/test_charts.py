@@ -20,9 +20,9 @@ from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.record import plain as data
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.charts import check_charts, write_charts
 from pneutouch.workflows.select.charts import tradeoff as selected_tradeoff
 from pneutouch.workflows.select.charts import tuning as selected_tuning
-from pneutouch.workflows.select.charts import write_charts
 from pneutouch.workflows.select.select import select
 from tests.refusals import refused
 
@@ -109,12 +109,21 @@ def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, 
     for folder in ("a", "b"):
         paths = write_charts(selection, tmp_path / folder, library=library)
         assert [path.name for path in paths] == ["trade-off.svg", "tuning.svg"]
-        assert sorted(path.name for path in (tmp_path / folder).iterdir()) == ["trade-off.svg", "tuning.svg"]
+        names = sorted(path.name for path in (tmp_path / folder).iterdir())
+        assert names == ["charts-manifest.json", "trade-off.svg", "tuning.svg"]
     for name in ("trade-off.svg", "tuning.svg"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
     (tmp_path / "file").write_text("x")
     with refused("charts"):
         write_charts(selection, tmp_path / "file", library=library)
+    # Its own charts are replaced, those of others are not.
+    write_charts(selection, tmp_path / "a", library=library)
+    (tmp_path / "a" / "tuning.svg").write_text("mine")
+    with refused(None, file=tmp_path / "a" / "tuning.svg", remedy="charts"):
+        check_charts(tmp_path / "a")
+    with refused(None, file=tmp_path / "a" / "tuning.svg", remedy="charts"):
+        write_charts(selection, tmp_path / "a", library=library)
+    assert (tmp_path / "a" / "tuning.svg").read_text() == "mine"
 
 
 @pytest.mark.slow

@@ -117,6 +117,19 @@ def test_warnings_appear_exactly_where_a_range_is_passed(found, rating):
     assert middle.depth_mm == said[9].depth_mm and f"stop at {said[8].depth_mm:g} mm" in middle.message
 
 
+def test_every_warning_names_what_ends_it(found, rating):
+    """The rig's file, another driving pressure, or the depth at which to stop."""
+    steps, rig = (
+        {"steps": protocol("steps", R0)},
+        Rig(force_range_N=1.0, pressure_range_kPa=2.0, force_resolution_N=1.0),
+    )
+    warned = [w for curve in found.curves for w in curve_warnings("x", rating, curve, steps, rig)]
+    warned += travel_warnings((999.0,), rig)
+    assert len({w.rule for w in warned}) == 6
+    for one in warned:
+        assert any(word in one.message for word in ("`rig`", "`pneumatics.driving_pressures_kPa`=", "stop there")), one
+
+
 def test_warning_of_the_range_end_names_where_and_why(found, rating):
     curve, steps = found.curves[0], protocol("steps", R0)
     warned = curve_warnings("x", rating, curve, {"steps": steps}, Rig())

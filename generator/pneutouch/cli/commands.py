@@ -134,7 +134,8 @@ class Commands(TyperGroup):
         except KeyboardInterrupt as error:
             # Typer makes an exit code of it, and drops what the library adds to it.
             if stop := stopped():
-                stop.notes = getattr(error, "__notes__", [])
+                named = partial(option, self.get_command(ctx, ctx.invoked_subcommand or ""))
+                stop.notes = [PneutouchError(note).message(named) for note in getattr(error, "__notes__", [])]
             raise
         except PneutouchError as error:
             refuse_stopped()

@@ -1,5 +1,6 @@
 """``pneutouch plan``: a test plan for the laboratory."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,8 +17,10 @@ from pneutouch.cli.app import (
     print_written,
     reporting,
 )
+from pneutouch.cli.commands import option
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, notify, report_next, table_text
+from pneutouch.errors import PneutouchError
 from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
 
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
 @app.command()
 @with_options(PlanOptions)
 def plan(
+    context: typer.Context,
     design: DesignArgument,
     rig: Annotated[
         Path | None,
@@ -54,7 +58,8 @@ def plan(
             )
             folder = write_plan(result, out)
         for warning in result.record.warnings:
-            notify(f"warning: {warning.rule}: {warning.message}")
+            words = PneutouchError(warning.message).message(partial(option, context.command))
+            notify(f"warning: {warning.rule}: {words}")
         print_written(result.record, folder, plan_text, json=json)
         if not json:
             report_next("simulate", folder)

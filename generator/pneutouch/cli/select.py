@@ -153,7 +153,10 @@ def select(
         request = _target(target, fields, set_ or [], have)
         _refuse(request, charts=charts is not None, pick=pick != 1)
         if charts is not None:
+            from pneutouch.workflows.select.charts import check_charts, write_charts
+
             check_writable(charts / "chart", key="charts")
+            check_charts(charts)
         begun = time.perf_counter()
         with bar("") as report:
             answer = search(request, where, written=None if write is None else pick, progress=report)
@@ -162,8 +165,6 @@ def select(
         choice = answer.pick(pick) if answer.choices else None
         path = None if choice is None or write is None else choice.write(write, folder, overwrite=overwrite)
         if charts is not None and isinstance(answer.run, SelectionRun):
-            from pneutouch.workflows.select.charts import write_charts
-
             write_charts(answer.run, charts, answer.run.answer.designs[pick - 1] if choice else None)
         _report(answer, path, json=json)
 

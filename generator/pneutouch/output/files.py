@@ -21,7 +21,7 @@ from pneutouch.results.record import plain
 from pneutouch.spec.files import check_plain, read_bytes
 from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 
-MANIFEST = "manifest.json"
+MANIFEST, CHARTS_MANIFEST = "manifest.json", "charts-manifest.json"
 
 _OLD = ".old"
 """Ending of the temporary name that two folders need to exchange their names."""
@@ -58,7 +58,7 @@ def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
     replace_files({path: content}, key=key)
 
 
-Content = bytes | memoryview | Iterable[bytes]
+Content = bytes | memoryview | Iterable[bytes | memoryview]
 """Content of a file, whole or in pieces."""
 
 
@@ -81,6 +81,42 @@ def replace_files(files: Mapping[Path, Content], *, key: str = "out") -> None:
                 temporary.replace(path)
     except OSError as error:
         raise _refused(path, error, key) from None
+
+
+def check_own(paths: Iterable[Path], listing: Path, key: str = "out") -> dict[str, Any]:
+    """Entries of the manifest ``listing`` of loose files, by name; none without it. Raises InputError if one of
+    ``paths`` exists otherwise than it states: a person wrote or changed it. ``key`` is the parameter of the place."""
+    listed: dict[str, Any] = {}
+    digests: dict[str, str] = {}
+    if os.path.lexists(listing):
+        try:
+            listed = dict(json.loads(read_bytes(listing, _MOST_MANIFEST, "manifest"))["files"])
+            digests = {name: str(one["sha256"]) for name, one in listed.items()}
+        except (InputError, ValueError, KeyError, TypeError, RecursionError):
+            raise _of_others(listing, key) from None
+    for path in paths:
+        if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != digests.get(path.name, "")):
+            raise _of_others(path, key)
+    return listed
+
+
+def replace_own(files: Mapping[Path, Content], listing: Path, key: str = "out") -> None:
+    """Write loose files and their manifest. Raises InputError as `check_own` and `replace_files`."""
+    entries = check_own(files, listing, key)
+
+    def counted(name: str, content: Content) -> Iterator[bytes | memoryview]:
+        size, hashed = 0, hashlib.sha256()
+        for piece in (content,) if isinstance(content, bytes | memoryview) else content:
+            size += len(piece)
+            hashed.update(piece)
+            yield piece
+        entries[name] = plain(FileEntry(hashed.hexdigest(), size))
+
+    def listed() -> Iterator[bytes]:
+        # The last to be written, when the entries of all others are known.
+        yield manifest(dict(sorted(entries.items())), listing.stem)
+
+    replace_files({**{path: counted(path.name, one) for path, one in files.items()}, listing: listed()}, key=key)
 
 
 @uninterrupted()
@@ -294,9 +330,9 @@ def _our_files(folder: Path) -> set[str]:
     raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
 
 
-def _of_others(path: Path) -> InputError:
+def _of_others(path: Path, key: str = "out") -> InputError:
     problem = "is not as pneutouch wrote it, or not of pneutouch, and would be lost"
-    return InputError(problem, file=path, remedy="move it away, or give another folder with `out`")
+    return InputError(problem, file=path, remedy=f"move it away, or give another place with `{key}`")
 
 
 def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:

@@ -230,6 +230,11 @@ def _reason(rule: str) -> Any:
 class Accepted(Table):
     """[accepted]: print rules whose warnings, not errors, are accepted with a reason each; they become notes."""
 
+    remark: ClassVar[str] = (
+        " Only flaws of a print can be accepted, none with which the sensor does not work (driving, envelope, hollows, "
+        "resins, release): follow the remedy of their message."
+    )
+
     mesh: Reason = _reason("mesh")
     walls: Reason = _reason("walls")
     pins: Reason = _reason("pins")

@@ -46,11 +46,8 @@ def explained(model: type[BaseModel], detail: Any, where: str | None) -> InputEr
     key = _label(detail["loc"])
     if detail["type"] == "extra_forbidden" and owner is not None:
         kind = "table" if isinstance(detail["input"], dict) else "key"
-        return InputError(
-            f"unknown {kind}.{nearest(path[-1], [f.alias or k for k, f in owner.model_fields.items()])}",
-            file=where,
-            key=key,
-        )
+        names, remark = [f.alias or k for k, f in owner.model_fields.items()], getattr(owner, "remark", "")
+        return InputError(f"unknown {kind}.{nearest(path[-1], names)}{remark}", file=where, key=key)
     if detail["type"] == "missing":
         return InputError("missing", file=where, key=key, remedy=_addition(owner, path))
     if detail["type"] == "value_error":

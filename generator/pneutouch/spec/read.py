@@ -117,7 +117,8 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
                 f"unknown table {table_name}.{nearest(table_name, model.model_fields)}", key=name, value=value
             )
         if key not in table.model_fields:
-            raise InputError(f"unknown key {name}.{nearest(key, table.model_fields)}", key=name, value=value)
+            hint = nearest(key, table.model_fields) + getattr(table, "remark", "")
+            raise InputError(f"unknown key {name}.{hint}", key=name, value=value)
         section = result.setdefault(table_name, {})
         if not isinstance(section, dict):
             raise InputError("must be a table", key=table_name, value=section)

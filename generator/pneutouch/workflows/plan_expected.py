@@ -68,34 +68,35 @@ def curve_warnings(
         "force range",
         "force_N",
         rig.force_range_N,
-        "expected force of {least:.1f} to {most:.1f} N passes the force sensor's {limit:g} N; {stop}, or take a larger "
-        "sensor",
+        "expected force of {least:.1f} to {most:.1f} N passes the force sensor's {limit:g} N; {stop}, or state a "
+        "larger sensor as force_range_N of the rig in `rig`",
     )
     over(
         "pressure range",
         "cavity_pressure_kPa",
         rig.pressure_range_kPa,
-        "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or take a "
-        "wider gauge",
+        "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or state "
+        "a wider gauge as pressure_range_kPa of the rig in `rig`",
     )
     lost = [depth for depth in depths if not curve.covers(depth)]
     if lost and curve.ends is not None:
         report(
             "range end",
             lost[0],
-            f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
+            f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}): stop there, or no figure uses the rest",
         )
     if rating.severity(curve.driving) is not None:
         remedy = rating.remedy_for(curve.driving)
-        raised = "" if remedy is None else f"; to raise it, {remedy}"
-        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{raised}")
+        raised = "" if remedy is None else f", or to raise it, {remedy}"
+        lower = f"take at most that, as by `pneumatics.driving_pressures_kPa`=0,{rating.pressure_kPa:.1f}"
+        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}; {lower}{raised}")
     first = expected[0].force_N
     if first is not None and first < RESOLVED * rig.force_resolution_N:
         report(
             "force resolution",
             None,
             f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions "
-            f"of {rig.force_resolution_N:g} N",
+            f"of {rig.force_resolution_N:g} N: state a finer sensor as force_resolution_N of the rig in `rig`",
         )
     return violations
 
@@ -105,7 +106,10 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     need = max(depths) + CLEARANCE
     if need <= rig.travel_mm:
         return []
-    text = f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm"
+    text = (
+        f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm: "
+        "state a longer one as travel_mm of the rig in `rig`"
+    )
     return [PlanViolation("travel", text, "", None, max(depths))]
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.characterize.load import load_curves, parse_columns
 from tests.bench.reads import refuse
@@ -380,7 +379,6 @@ def test_a_stated_kind_insists_and_is_questioned(tmp_path):
 
 
 def test_the_kind_of_a_campaign_stands_in_its_file(tmp_path):
-    run = CampaignRun(file="run.csv", sensor="A1")
     (tmp_path / "run.csv").write_text(READ["triangular"].text())
     (tmp_path / "campaign.toml").write_text('[[runs]]\nfile = "run.csv"\nsensor = "A1"\n')
     with pytest.raises(InputError, match=r"\[\[runs\]\]") as refused:
@@ -388,7 +386,8 @@ def test_the_kind_of_a_campaign_stands_in_its_file(tmp_path):
     assert refused.value.key == "kind"
     # A run without kind and resin is of the kind that it shows, and of the design's resin.
     measured = characterize(tmp_path, "paper-dome", model="atlas").figures
-    assert [entry.kind for entry in measured.runs] == ["loop"] and run.resin == Campaign(runs=[run]).runs[0].resin
+    assert [group.resin for group in measured.groups] == ["TangoPlus"]
+    assert [entry.kind for entry in measured.runs] == ["loop"]
 
 
 def test_one_recording_is_no_two_runs(tmp_path):

@@ -79,7 +79,9 @@ def test_pictures_are_written_for_each_field_the_same_twice(swept, tmp_path):
         *(f"x-over-{name}.{kind}" for name in fields for kind in ("svg", "png")),
     ]
     assert [path.read_bytes() for path in files] == [path.read_bytes() for path in others]
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["x.nc", *(path.name for path in others)])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
+        ["x-manifest.json", "x.nc", *(path.name for path in others)]
+    )
 
 
 def test_two_numbers_give_a_map_and_one_value_gives_no_picture():

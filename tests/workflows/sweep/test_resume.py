@@ -52,7 +52,11 @@ def test_three_kills_at_random_moments_change_no_byte(undisturbed, tmp_path):
     assert done.returncode == 0, done.stderr
     assert POINTS - json.loads(done.stdout)["computed"] == 32 * kept
     assert out.read_bytes() == undisturbed
-    assert [name for name in names(tmp_path) if "-over-" not in name] == ["sweep.csv", "sweep.nc"]
+    assert [name for name in names(tmp_path) if "-over-" not in name] == [
+        "sweep-manifest.json",
+        "sweep.csv",
+        "sweep.nc",
+    ]
 
 
 @pytest.mark.slow

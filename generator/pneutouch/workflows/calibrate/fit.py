@@ -35,6 +35,7 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.resins import resin_of
 from pneutouch.parts import assemble
 from pneutouch.results.calibration import (
     CalibrationRecord,
@@ -278,7 +279,7 @@ def observations_of(
 def _remarks(campaign: Campaign, scene: ResolvedDesign, sensor: str) -> list[str]:
     resin = next(run.resin for run in campaign.runs if run.sensor == sensor)
     fitted = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
-    if resin != scene.design.membrane.material:
+    if resin != resin_of(scene):
         fitted.append(
             f"the campaign states {sensor} to be of {resin}, the design states {scene.design.membrane.material}: the "
             "design's resin gives the start and the prior of the modulus"

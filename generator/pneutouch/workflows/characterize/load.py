@@ -23,7 +23,7 @@ from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.output.files import file_digest
 from pneutouch.results.measured import ReadFiles
-from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat, RunKind, campaign_of
+from pneutouch.spec.campaign import AS_DESIGNED, Campaign, CampaignRun, ColumnMap, FileFormat, RunKind, campaign_of
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.read import validate
 from pneutouch.spec.values import file_name
@@ -231,9 +231,11 @@ def load_curves(
     else:
         campaign, folder = _single(data, scene, kind), data.parent
     campaign = with_reading(campaign, reading)
-    if scene is not None and of_the_day:
-        ambient = {"ambient_pressure_kPa": scene.design.pneumatics.ambient_pressure_kPa}
-        campaign = campaign.model_copy(update=ambient)
+    if scene is not None:
+        own = {"resin": resin_of(scene)}
+        runs = [run.model_copy(update=own) if run.resin == AS_DESIGNED else run for run in campaign.runs]
+        ambient = {"ambient_pressure_kPa": scene.design.pneumatics.ambient_pressure_kPa} if of_the_day else {}
+        campaign = campaign.model_copy(update={"runs": runs, **ambient})
     gathered = _Gathered()
     ambient_kPa = campaign.ambient_pressure_kPa
     if ambient_kPa is None:

@@ -8,7 +8,7 @@ import numpy as np
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.charts import curve, interval
 from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
-from pneutouch.output.files import replace_files
+from pneutouch.output.files import CHARTS_MANIFEST, check_own, replace_own
 from pneutouch.report.chart import Chart, drawn_svg
 from pneutouch.report.prose import front_error
 from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
@@ -30,6 +30,14 @@ _DESIGNS = 5
 """Greatest number of designs on the trade-off, and of resins on the tuning chart."""
 
 
+TRADE_OFF, TUNING = "trade-off.svg", "tuning.svg"
+
+
+def check_charts(folder: Path) -> None:
+    """Raise InputError if a chart in ``folder`` is not as it was written."""
+    check_own((folder / TRADE_OFF, folder / TUNING), folder / CHARTS_MANIFEST, "charts")
+
+
 def write_charts(
     selection: SelectionRun, folder: Path, chosen: Candidate | None = None, library: Library | None = None
 ) -> list[Path]:
@@ -37,14 +45,14 @@ def write_charts(
 
     Returns the paths of the files.
 
-    Raises InputError if the folder cannot be written."""
+    Raises InputError if the folder cannot be written, or if a chart there is not as it was written."""
     library = library or Library.default()
-    charts = {"trade-off.svg": drawn_svg(Chart((tradeoff_panel(tradeoff(selection, library)),), _SIZE))}
+    charts = {TRADE_OFF: drawn_svg(Chart((tradeoff_panel(tradeoff(selection, library)),), _SIZE))}
     chart = tuning(selection, library, chosen)
     if chart is not None:
-        charts["tuning.svg"] = drawn_svg(Chart((tuning_panel(chart),), _SIZE))
+        charts[TUNING] = drawn_svg(Chart((tuning_panel(chart),), _SIZE))
     files = {folder / name: text.encode() for name, text in charts.items()}
-    replace_files(files, key="charts")
+    replace_own(files, folder / CHARTS_MANIFEST, "charts")
     return list(files)
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -19,7 +18,7 @@ from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models.choice import USUAL
-from pneutouch.output.files import Content, replace_files
+from pneutouch.output.files import CHARTS_MANIFEST, Content, check_own, replace_own
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -226,19 +225,17 @@ def _cell(value: Any) -> Any:
 
 
 def check_companions(out: Path, plan: SweepPlan) -> None:
-    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace another file.
-
-    If there is no dataset, a file in the place of table or picture was not written by a sweep.
-    """
+    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace another file, or one
+    that was changed."""
     check_output(out)
-    if out.exists():
-        return
     names = [f"over-{key.replace('.', '_')}" for key in plan.varied] + ["over-point", f"over-{PRESSURE}", "map"]
-    places = {out.with_suffix(".csv"): "the table"}
-    places |= {path: "a picture" for name in names for path in _picture_files(out, name)}
-    for path, what in places.items():
-        if os.path.lexists(path):
-            raise InputError(f"{path} is in the place of {what}", key="out", remedy="give another `out`, or move it")
+    pictures = (path for name in names for path in _picture_files(out, name))
+    check_own((out.with_suffix(".csv"), *pictures), _listing(out))
+
+
+def _listing(out: Path) -> Path:
+    """Manifest of the table and the pictures next to a dataset."""
+    return out.with_name(f"{out.stem}-manifest.json")
 
 
 def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], list[Path]]:
@@ -252,7 +249,7 @@ def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], l
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
-    replace_files(files)
+    replace_own(files, _listing(out))
     return list(islice(table_rows(content), shown)), list(files)
 
 
@@ -309,7 +306,7 @@ def write_maps(content: xarray.Dataset, folder: Path) -> list[Path]:
     for name, swept in sweep_maps(content).items():
         text, image = contour_map(swept)
         files |= {folder / f"{name}.svg": text.encode(), folder / f"{name}.png": image}
-    replace_files(files, key="charts")
+    replace_own(files, folder / CHARTS_MANIFEST, "charts")
     return list(files)
 
 

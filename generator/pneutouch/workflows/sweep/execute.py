@@ -116,12 +116,12 @@ def _keeping(folder: WorkFolder, columns: SweepColumns) -> Iterator[None]:
     def kept() -> str:
         return f"{columns.filled} of {columns.study.plan.count} points are done and kept in {folder.path}"
 
-    remedy = "the same command (without `fresh`) goes on from there"
+    remedy = "the same command, without `fresh`, goes on from there"
     try:
         yield
     except KeyboardInterrupt as error:
         if columns.filled:
-            error.add_note(f"{kept()}; {remedy.replace('`', '')}")
+            error.add_note(f"{kept()}; {remedy}")
         raise
     except ComputationError as error:
         raise joined((error, ComputationError(kept(), remedy=remedy))) from None
