@@ -14,14 +14,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.bench.blocks import blocks_of
+from tests.bench.reads import blocks_of
 
 from benchmarks.store import store, stored
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figures import BY_KEY, FIGURES, RESOLVED, RunGroup, summarize
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, population, press_curves, simulate_run
-from pneutouch.bench.simulate.curve import PressCurve, PressCurves
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves, press_curves
+from pneutouch.bench.simulate.rig import SimulatedSpecimens
+from pneutouch.bench.simulate.runs import SimulationTruth, population, simulate_run
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor

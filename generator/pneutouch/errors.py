@@ -125,25 +125,22 @@ def joined(errors: Sequence[PneutouchError]) -> PneutouchError:
 
 
 _EVERYDAY = {
-    "diameter": "inner_radius_mm",
-    "plate": "plate_diameter_mm",
-    "pressure": "driving_pressures_kPa",
-    "pressures": "driving_pressures_kPa",
-    "radius": "inner_radius_mm",
-    "resin": "material",
-    "thickness": "wall_thickness_mm",
-    "wall": "wall_thickness_mm",
+    "inner_radius_mm": "radius diameter",
+    "wall_thickness_mm": "wall thickness",
+    "driving_pressures_kPa": "pressure pressures",
+    "plate_diameter_mm": "plate",
+    "material": "resin",
 }
-"""Keys by everyday names that others resemble more."""
+"""Everyday names of keys that others resemble more."""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Hint ``" Did you mean X?"`` for a known word of that everyday name, ending in ``_word``, or similar to it; else
     the known words."""
     words = list(known)
-    everyday = word.lower().removesuffix("_mm").removesuffix("_kPa")
-    if (key := _EVERYDAY.get(everyday)) in words:
-        return f" Did you mean {key}{', half of it' if everyday == 'diameter' else ''}?"
+    everyday = word.lower().removesuffix("_mm").removesuffix("_kpa")
+    if meant := [key for key, names in _EVERYDAY.items() if everyday in names.split() and key in words]:
+        return f" Did you mean {meant[0]}{', half of it' if everyday == 'diameter' else ''}?"
     if longer := [one for one in words if one.endswith(f"_{word}")]:
         return f" Did you mean {longer[0]}?"
     candidates = sorted(words)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pneutouch.bench.curve import curve_of
 from pneutouch.spec.campaign import Rig
-from tests.bench.blocks import blocks_of
+from tests.bench.reads import blocks_of
 from tests.bench.rig import Dome, Sensor, run_of
 
 FILE = Path("run.csv")

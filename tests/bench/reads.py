@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from pneutouch.bench.reading import PLATE, read_blocks
+from pneutouch.bench.record import BlockCollector
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
@@ -36,3 +38,10 @@ def spoilt(tmp_path, file, row, old=None, new=""):
     path = tmp_path / "spoilt.csv"
     path.write_text("".join(lines))
     return path
+
+
+def blocks_of(file, time, *samples, rate=None, size=None):
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa, without range checks."""
+    collector = BlockCollector(file, rate, size, len(time))
+    collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, *samples]).astype(float))
+    return collector.blocks()

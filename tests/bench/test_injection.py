@@ -12,7 +12,7 @@ from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA, ML
-from tests.bench.blocks import blocks_of
+from tests.bench.reads import blocks_of
 from tests.refusals import refused
 
 AMBIENT = 101.325 * KPA

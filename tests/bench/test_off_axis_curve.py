@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.simulate import curve as curve_module
-from pneutouch.bench.simulate import press_curves
+from pneutouch.bench.simulate.curve import press_curves
 from pneutouch.catalogue.scene import load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.resins import rating_of

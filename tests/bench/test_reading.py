@@ -12,8 +12,7 @@ from pneutouch.bench.reading import LEAK, read_blocks
 from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA
-from tests.bench.blocks import blocks_of
-from tests.bench.reads import COLUMNS, RIG, read, refuse
+from tests.bench.reads import COLUMNS, RIG, blocks_of, read, refuse
 from tests.bench.rig import Faults, record, write
 
 

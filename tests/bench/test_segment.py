@@ -16,8 +16,8 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA
-from tests.bench.blocks import blocks_of
 from tests.bench.curves import FILE, LAWS, curve, whys
+from tests.bench.reads import blocks_of
 from tests.bench.rig import Faults, Sensor, record, run_of, small
 
 

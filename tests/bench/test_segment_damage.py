@@ -14,8 +14,8 @@ from pneutouch.bench.run_warnings import MOST
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from tests.bench.blocks import blocks_of
 from tests.bench.curves import FILE, curve, whys
+from tests.bench.reads import blocks_of
 from tests.bench.rig import run_of, small, write
 
 

@@ -12,19 +12,17 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from pneutouch.bench.indents import RunProtocol, protocol
-from pneutouch.bench.simulate import (
-    RigModel,
-    ScatterModel,
+from pneutouch.bench.simulate.curve import line_pressure, press_curves, sensor_pressure
+from pneutouch.bench.simulate.rig import RigModel, ScatterModel, WallMemory, parameters
+from pneutouch.bench.simulate.runs import (
     SimulationTruth,
-    WallMemory,
-    press_curves,
+    _lagging,
+    _shut_in,
     simulate_leak,
     simulate_run,
     specimen_figures,
+    within,
 )
-from pneutouch.bench.simulate.curve import line_pressure, sensor_pressure
-from pneutouch.bench.simulate.rig import parameters
-from pneutouch.bench.simulate.runs import _lagging, _shut_in, within
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, rng

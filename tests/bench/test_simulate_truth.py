@@ -8,20 +8,16 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.indents import protocol
-from pneutouch.bench.simulate import (
-    ModelDeviation,
+from pneutouch.bench.simulate.curve import ModelDeviation, PressCurves, press_curves
+from pneutouch.bench.simulate.rig import (
     RigModel,
     ScatterModel,
     SimulatedSpecimens,
-    SimulationTruth,
     WallMemory,
-    population,
-    press_curves,
-    simulate_run,
-    specimen_figures,
+    ageing_factor,
+    stiffened,
 )
-from pneutouch.bench.simulate.curve import PressCurves
-from pneutouch.bench.simulate.rig import ageing_factor, stiffened
+from pneutouch.bench.simulate.runs import SimulationTruth, population, simulate_run, specimen_figures
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.units import KPA

@@ -10,7 +10,7 @@ import pytest
 from pneutouch.bench.record import MOST, MeasuredCurve, SuspectInterval, trace
 from pneutouch.report.fit_charts import evidence_svg
 from pneutouch.units import KPA
-from tests.bench.blocks import blocks_of
+from tests.bench.reads import blocks_of
 from tests.bench.rig import run_of
 
 

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 from pneutouch.bench.indents import RunProtocol
-from pneutouch.bench.simulate import PressCurve, WallMemory, press_curves
-from pneutouch.bench.simulate.curve import PressCurves
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves, press_curves
+from pneutouch.bench.simulate.rig import WallMemory
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor

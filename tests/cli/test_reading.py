@@ -20,8 +20,7 @@ from pneutouch.spec.campaign import Campaign, ColumnMap
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import validate
 from pneutouch.tables.unit_words import UNITS
-from pneutouch.workflows.characterize import parse_columns
-from pneutouch.workflows.characterize.load import with_reading
+from pneutouch.workflows.characterize.load import parse_columns, with_reading
 from pneutouch.workflows.simulate import simulate
 from tests.conftest import ROOT
 from tests.refusals import refused

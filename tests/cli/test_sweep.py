@@ -116,7 +116,7 @@ def test_files_of_others_are_not_replaced(name, fresh, command, tmp_path):
     words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,1.5", "--model", "membrane"]
     result = command("sweep", *words, "--out", "x.nc", *fresh)
     assert result.returncode == 2
-    assert result.stderr.startswith(f"error: {name}: ") and "with --out" in result.stderr
+    assert result.stderr.startswith(f"error: {name}: ") and "--out" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "mine"
 

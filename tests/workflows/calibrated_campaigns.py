@@ -10,7 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR
-from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTruth
+from pneutouch.bench.simulate.curve import ModelDeviation
+from pneutouch.bench.simulate.rig import ScatterModel
+from pneutouch.bench.simulate.runs import SimulationTruth
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate

@@ -273,4 +273,4 @@ def test_absolute_pressures_are_those_over_the_ambient_one_of_the_campaigns_desi
         '[[runs]]\nfile = "run.csv"\nsensor = "A1"\nkind = "steps"\n'
     )
     outcome = run_calibration(tmp_path, None, CalibrationOptions(), tmp_path / "out", root=tmp_path)
-    assert not any("before contact" in note for note in outcome.record.notes)
+    assert not any("driving_pressure_kPa" in note for note in outcome.record.notes)

@@ -12,7 +12,8 @@ import pandas
 import pytest
 
 from pneutouch.bench.indents import protocol
-from pneutouch.bench.simulate import SimulationTruth, press_curves
+from pneutouch.bench.simulate.curve import press_curves
+from pneutouch.bench.simulate.runs import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, campaign_of, design_of
 from pneutouch.spec.options import PlanOptions, SimulationOptions, options_of

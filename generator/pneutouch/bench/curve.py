@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.excursions import Excursion, smoothed
+from pneutouch.bench.excursions import Excursion, check_exchanged, smoothed
 from pneutouch.bench.first_contact import BEFORE, Baseline, baseline, step_share
 from pneutouch.bench.indents import RunIndentations, find_indents
 from pneutouch.bench.record import BLOCK_ARRAYS, Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
@@ -21,7 +21,7 @@ from pneutouch.bench.run_warnings import (
     slope_variance,
     untrusted,
 )
-from pneutouch.bench.source import turned
+from pneutouch.bench.source import otherwise
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, Rig, RunKind
 
@@ -54,6 +54,8 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     blocks = _without_spikes(blocks)
     if run.kind == "hand":
         blocks = _by_force(blocks)
+    else:
+        check_exchanged(blocks)
     indentations = find_indents(blocks, by_hand=run.kind == "hand")
     shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
     told = "kind" not in run.model_fields_set
@@ -123,7 +125,7 @@ def _by_force(blocks: Blocks) -> Blocks:
         raise InputError(
             f"column {blocks.columns.force.name}: falls by {fall:.3g} N as the sensor is pressed",
             file=blocks.file,
-            remedy=f"it must rise: {turned(blocks.columns, 'force')}",
+            remedy=f"it must rise: {otherwise(blocks.columns, 'force')}",
         )
     return replace(blocks, position=blocks.force)
 

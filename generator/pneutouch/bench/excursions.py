@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.record import Blocks
-from pneutouch.bench.source import turned
+from pneutouch.bench.source import exchanged, otherwise
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import RunKind
 
@@ -48,6 +48,11 @@ _SCATTERED = 1.5
 
 LONG = 5.0
 """Seconds above which a stay at one depth, if also longer than the way in, is a relaxation: our choice."""
+
+
+_RESTS, _GOES_ON, _CONCAVE = 0.01, 0.05, 0.6
+"""Share of a channel's span within which it rests, of another's by which that goes on then, and of its rise that it has
+at half of the first one's: our choice."""
 
 
 class Excursion(NamedTuple):
@@ -109,6 +114,24 @@ def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tup
     return parts, bool(tops) and (not lows or tops[0] < lows[0])
 
 
+def check_exchanged(blocks: Blocks) -> None:
+    """Raise InputError if position and force look exchanged: the force comes in from the clear while the position
+    rests, and then rises most at first, as the travel of a dome does over its force."""
+    place, force = blocks.position, blocks.force
+    low, high = np.quantile(place, (0.01, 0.99))
+    rests, half = place <= low + _RESTS * (high - low), np.abs(place - 0.5 * (low + high)) <= 0.1 * (high - low)
+    clear, contact = np.quantile(force[rests], (0.02, 0.98))
+    middle, deep = np.median(force[half]) if half.any() else np.nan, float(np.quantile(force, 0.99))
+    if contact - clear > _GOES_ON * (deep - clear) and middle - contact > _CONCAVE * (deep - contact) > 0:
+        of = blocks.columns.position.name, blocks.columns.force.name
+        raise InputError(
+            f"columns {of[0]} and {of[1]} look exchanged: {of[0]} rests while {of[1]} begins to rise, as a force does "
+            "before the plate touches",
+            file=blocks.file,
+            remedy=exchanged(blocks.columns, "position", "force"),
+        )
+
+
 def position_noise(position: Array) -> float:
     """Standard deviation of a block's position, mm, from second differences, which are zero at constant speed."""
     if position.size < 3:
@@ -137,7 +160,7 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
             f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
             f"({place.max():.4g} mm)",
             file=blocks.file,
-            remedy=f"position must count into the sensor: {turned(blocks.columns, 'position')}",
+            remedy=f"position must count into the sensor: {otherwise(blocks.columns, 'position')}",
         )
 
 
@@ -231,9 +254,6 @@ def kind_of(blocks: Blocks, parts: list[Excursion]) -> RunKind:
     depths = [float(np.median(blocks.position[slice(*one.hold)])) for one in held]
     if np.ptp(depths) > TURN * np.ptp(blocks.position):
         return "steps"
-    return "relaxation" if all(_is_long(blocks.time, one) for one in held) else "loop"
-
-
-def _is_long(time: Array, one: Excursion) -> bool:
-    begin, end = float(time[one.hold[0]]), float(time[one.hold[1] - 1])
-    return end - begin > max(LONG, begin - float(time[one.clear[1] - 1]))
+    times = blocks.time[[(one.clear[1] - 1, one.hold[0], one.hold[1] - 1) for one in held]]
+    way, stay = np.diff(times, axis=1).T
+    return "relaxation" if (stay > np.maximum(LONG, way)).all() else "loop"

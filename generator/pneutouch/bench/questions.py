@@ -87,7 +87,7 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(started, 1)])) / KPA, run.driving_pressure_kPa
     if looks_absolute(read_kPa - stated_kPa, _SURELY_ABSOLUTE):
         problem = f"a leak run that begins at {read_kPa:.4g} kPa, which looks like an absolute pressure"
-        absolute = otherwise(blocks.columns, "pressure", "unit", f"{blocks.columns.pressure.unit}{ABSOLUTE_UNIT}")
+        absolute = otherwise(blocks.columns, "pressure", f"{blocks.columns.pressure.unit}{ABSOLUTE_UNIT}")
         raise InputError(problem, file=blocks.file, remedy=f"{absolute}, of which the ambient pressure is subtracted")
     if (swing := _swing(blocks)) is not None:
         questions.append(swing)

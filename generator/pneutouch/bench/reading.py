@@ -12,7 +12,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval
 from pneutouch.bench.run_warnings import lagging
-from pneutouch.bench.source import MeasuredFile, exchanged, turned
+from pneutouch.bench.source import MeasuredFile, otherwise
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
@@ -50,10 +50,6 @@ choice. No two instruments agree so closely, and no dome is so linear."""
 _STILL, _GROWN, _RISEN = 1e-3, 0.02, 0.2
 """Shares of a channel's span: within the first of its greatest value it stays there; growth over as much travel before,
 and rise of the force under a position that stays, above which it is at the end of its range: our choice."""
-
-_RESTS, _GOES_ON, _CONCAVE = 0.01, 0.05, 0.6
-"""Share of a channel's span within which it rests, of another's by which that goes on then, and of its rise that it has
-at half of the first one's: our choice."""
 
 _EXACT = 1e-9
 """Relative difference up to which two blocks hold the same number: summing rounds."""
@@ -97,7 +93,6 @@ def read_blocks(
         _check_apart(blocks, columns, keys)
         if "position" in keys:
             _check_alive(blocks, names)
-            _check_exchanged(blocks, columns)
             warnings += _at_end(blocks, "position")
     tops = {"force": (rig.force_range_N, 1.0, "N"), "pressure": (rig.pressure_range_kPa, KPA, "kPa")}
     for key in (key for key in keys if key in tops):
@@ -182,24 +177,6 @@ def _check_apart(blocks: Blocks, columns: ColumnMap, keys: Sequence[str]) -> Non
                 file=blocks.file,
                 remedy=f"{first} and {second} must be measured apart: was one column copied, or named twice?",
             )
-
-
-def _check_exchanged(blocks: Blocks, columns: ColumnMap) -> None:
-    """Raise InputError if position and force look exchanged: the force comes in from the clear while the position
-    rests, and then rises most at first, as the travel of a dome does over its force."""
-    place, force = blocks.position, blocks.force
-    low, high = np.quantile(place, (0.01, 0.99))
-    rests, half = place <= low + _RESTS * (high - low), np.abs(place - 0.5 * (low + high))
-    clear, contact = np.quantile(force[rests], (0.02, 0.98))
-    middle, deep = np.median(force[half <= np.quantile(half, _RESTS)]), float(np.quantile(force, 0.99))
-    if contact - clear > _GOES_ON * (deep - clear) and middle - contact > _CONCAVE * (deep - contact) > 0:
-        of = columns.position.name, columns.force.name
-        raise InputError(
-            f"columns {of[0]} and {of[1]} look exchanged: {of[0]} rests while {of[1]} begins to rise, as a force does "
-            "before the plate touches",
-            file=blocks.file,
-            remedy=exchanged(columns, "position", "force"),
-        )
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
@@ -346,7 +323,7 @@ def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -
         raise InputError(
             f"column {columns.pressure.name}: does not rise with {columns.volume.name}",
             file=path,
-            remedy=f"are the columns swapped, or is a sign wrong: {turned(columns, 'volume')}",
+            remedy=f"are the columns swapped, or is a sign wrong: {otherwise(columns, 'volume')}",
         )
     return volume, pressure
 

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.indents import HOLD, RELAXATION
 from pneutouch.bench.questions import FAR, RESET_KPA, RESET_SHARE, looks_absolute, number, run_questions
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.source import exchanged, otherwise, turned
+from pneutouch.bench.source import exchanged, otherwise
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.campaign import ColumnMap
 from pneutouch.tables.unit_words import ABSOLUTE as ABSOLUTE_UNIT
@@ -151,7 +151,7 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
         same = " or ".join(shown(unit) for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
         is_exact = off[nearest] < math.log(UNIT_NEAR)
         then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
-        right = otherwise(columns, key, "unit", nearest)
+        right = otherwise(columns, key, nearest)
         raise InputError(f"{problem}; its unit looks like {same}{then}", file=file, remedy=right)
     why = _WHY_LEAK if key == "pressure" and ratio < 1.0 else _WHY_TIME if key == "time" else _WHY
     return f"{problem}; no unit explains that: {why}"
@@ -165,13 +165,13 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
             raise InputError(
                 f"column {column.name}: falls by {number(-deep / unit)} {name} as the sensor is pressed",
                 file=file,
-                remedy=f"it must rise: {turned(columns, key)}",
+                remedy=f"it must rise: {otherwise(columns, key)}",
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
             f"column {columns.position.name}: falls as the force rises",
             file=file,
-            remedy=f"it must count into the sensor: {turned(columns, 'position')}",
+            remedy=f"it must count into the sensor: {otherwise(columns, 'position')}",
         )
 
 
@@ -278,7 +278,7 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"
     if looks_absolute(off_kPa):
         problem += ", which looks like an absolute pressure"
-        absolute = otherwise(columns, "pressure", "unit", f"{columns.pressure.unit}{ABSOLUTE_UNIT}")
+        absolute = otherwise(columns, "pressure", f"{columns.pressure.unit}{ABSOLUTE_UNIT}")
         remedy = f"{absolute}, of which the ambient pressure is subtracted, or {set_so}"
     else:
         remedy = f"name the right file, or the unit by `columns`, subtract the gauge's zero in the file, or {set_so}"

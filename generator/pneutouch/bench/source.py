@@ -165,15 +165,12 @@ def as_option(**columns: Column) -> str:
     return f"give `columns` {shlex.quote(','.join(texts))}"
 
 
-def otherwise(columns: ColumnMap, key: str, field: str, value: str | int) -> str:
-    """Remedy that reads a channel with another unit or sign (``field``) of its column, as option and campaign key."""
-    option = as_option(**{key: getattr(columns, key).model_copy(update={field: value})})
+def otherwise(columns: ColumnMap, key: str, unit: str = "") -> str:
+    """Remedy that reads a channel in another unit, or without one with the other sign, as option and campaign key."""
+    column: Column = getattr(columns, key)
+    field, value = ("unit", unit) if unit else ("sign", -column.sign)
+    option = as_option(**{key: column.model_copy(update={field: value})})
     return f"{option}, or in a campaign set columns.{key}.{field} = {shown(value)}"
-
-
-def turned(columns: ColumnMap, key: str) -> str:
-    """Remedy that reads a channel with the other sign."""
-    return otherwise(columns, key, "sign", -getattr(columns, key).sign)
 
 
 def exchanged(columns: ColumnMap, first: str, second: str) -> str:

@@ -119,6 +119,8 @@ def mean_of(groups: Sequence[Array]) -> Estimate:
 
     With one specimen the interval is over its runs and does not cover other specimens; one value has no interval.
     """
+    from scipy.special import stdtrit
+
     runs = sum(len(group) for group in groups)
     if len(groups) > 1:
         drawn, over = np.array([float(np.mean(group)) for group in groups]), "specimens"
@@ -127,7 +129,8 @@ def mean_of(groups: Sequence[Array]) -> Estimate:
     value = float(drawn.mean())
     if drawn.size < 2:
         return Estimate(value, None, None, len(groups), runs, "")
-    half = _quantile(drawn.size - 1) * float(drawn.std(ddof=1)) / np.sqrt(drawn.size)
+    # Student's t at the upper end of the interval.
+    half = float(stdtrit(drawn.size - 1, 0.5 * (1 + LEVEL))) * float(drawn.std(ddof=1)) / np.sqrt(drawn.size)
     return Estimate(value, value - half, value + half, len(groups), runs, over)
 
 
@@ -168,10 +171,3 @@ def widened(estimate: Estimate, reading: float) -> Estimate:
     half = float(np.hypot(0.5 * (estimate.high - estimate.low), reading * estimate.value))
     middle = 0.5 * (estimate.high + estimate.low)
     return replace(estimate, low=middle - half, high=middle + half)
-
-
-def _quantile(freedom: int) -> float:
-    """Student's t at the upper end of an interval of `LEVEL`."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.5 * (1 + LEVEL)))

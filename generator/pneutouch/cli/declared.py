@@ -211,7 +211,7 @@ ColumnsOption = Annotated[
 
 def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The tables [columns] and [format] that the options state."""
-    from pneutouch.workflows.characterize import parse_columns
+    from pneutouch.workflows.characterize.load import parse_columns
 
     stated = {name: value for name, value in fields.items() if name in READING_FIELDS}
     return {"columns": parse_columns(columns or []), **field_tables(READING_FIELDS, stated)}

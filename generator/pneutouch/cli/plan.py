@@ -72,19 +72,9 @@ def plan_text(plan: "PlannedCampaign") -> str:
     for resin in plan.resins:
         for state in resin.states:
             known = [point for point in state.points if point.force_N is not None]
-            last = known[-1] if known else None
-            rows.append(
-                [
-                    resin.resin,
-                    f"{state.driving_pressure_kPa:g}",
-                    *(
-                        ["-"] * 3
-                        if last is None
-                        else [f"{getattr(last, key):.2f}" for key in ("depth_mm", "force_N", "pressure_rise_kPa")]
-                    ),
-                    resin.model,
-                ]
-            )
+            keys = ("depth_mm", "force_N", "pressure_rise_kPa")
+            cells = [f"{getattr(known[-1], key):.2f}" for key in keys] if known else ["-"] * 3
+            rows.append([resin.resin, f"{state.driving_pressure_kPa:g}", *cells, resin.model])
     runs, sensors = counted(len(plan.runs), "run"), counted(len(plan.sensors), "specimen")
     return "\n".join(
         [

@@ -15,7 +15,7 @@ import sys
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Any, Protocol, TextIO
 
 from pneutouch.errors import ComputationError, one_line
 
@@ -90,17 +90,8 @@ def _wrapped(line: str, columns: int) -> str:
     if len(line) <= columns or _COPIED.match(line):
         return line
     indent = line[: len(line) - len(line.lstrip())] + "  "
-    return "\n".join(
-        textwrap.wrap(
-            line,
-            columns,
-            subsequent_indent=indent,
-            break_long_words=False,
-            break_on_hyphens=False,
-            drop_whitespace=True,
-            replace_whitespace=False,
-        )
-    )
+    kept: Any = dict.fromkeys(("break_long_words", "break_on_hyphens", "replace_whitespace"), False)
+    return "\n".join(textwrap.wrap(line, columns, subsequent_indent=indent, **kept))
 
 
 def _is_coloured(stream: TextIO) -> bool:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from pneutouch.bench.simulate import SimulationTruth, press_curves
-from pneutouch.bench.simulate.curve import PressCurves
+from pneutouch.bench.simulate.curve import PressCurves, press_curves
+from pneutouch.bench.simulate.runs import SimulationTruth
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import BeyondLimitError, InputError, nearest

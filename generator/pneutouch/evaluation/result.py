@@ -61,23 +61,20 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
         )
     record = by_model(evaluation.prediction)
+    # Gas volume of connector, tube and gauge as drawn, if 0 is stated behind a tube.
+    assembly = evaluation.assembly
+    drawn_mL = float(rounded(assembly.drawn_volume / ML, MODEL_DIGITS)) if assembly.dead_volume_note else None
     anywhere = _anywhere(evaluation) if evaluation.scene.design.contact.anywhere else None
     return replace(
         record,
         states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
         contact=contact_document(evaluation.scene).get("contact"),
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
-        dead_volume_note=evaluation.assembly.dead_volume_note or None,
-        dead_volume_as_drawn_mL=_drawn_mL(evaluation),
+        dead_volume_note=assembly.dead_volume_note or None,
+        dead_volume_as_drawn_mL=drawn_mL,
         as_drawn=states_as_drawn(evaluation),
         contact_anywhere=anywhere,
     )
-
-
-def _drawn_mL(evaluation: Evaluation) -> float | None:
-    """Gas volume of connector, tube and gauge as drawn, mL, if 0 is stated behind a tube; else None."""
-    assembly = evaluation.assembly
-    return float(rounded(assembly.drawn_volume / ML, MODEL_DIGITS)) if assembly.dead_volume_note else None
 
 
 def states_as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
@@ -245,18 +242,15 @@ def by_mixing_curve(outcomes: Sequence[CurveOutcome]) -> tuple[ByMixingCurve, ..
             shear_modulus_MPa=one.by_curve.shear_modulus_MPa.nominal,
             beyond_last_point=one.by_curve.beyond,
             rated_pressure_kPa=None if one.rated is None else one.rated / KPA,
-            states=tuple(_mix_state(state) for state in one.states),
+            states=tuple(
+                MixState(state.driving_pressure / KPA, found and found.sensitivity, found and found.force_range[1])
+                for state in one.states
+                for found in (state.figures,)
+            ),
         )
         for one in outcomes
     )
     return rounded(records, _DIGITS)
-
-
-def _mix_state(state: SensorState) -> MixState:
-    figures = state.figures
-    if figures is None:
-        return MixState(state.driving_pressure / KPA, None, None)
-    return MixState(state.driving_pressure / KPA, figures.sensitivity, figures.force_range[1])
 
 
 def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:

@@ -83,9 +83,10 @@ def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
         )
     low_kPa, high_kPa = gauge.gauge_pressures_kPa(ambient_pressure / KPA)
     noise, error = _pressure(gauge.noise_kPa), _pressure(gauge.error_kPa)
-    return GaugeReading(
-        gauge.title, low_kPa * KPA, high_kPa * KPA, noise, _step(gauge), _rate_Hz(gauge), gauge.is_absolute, error
-    )
+    analog_Hz = RECORDER_RATE_HZ if "analog" in gauge.interfaces else None
+    rate_Hz = analog_Hz if gauge.rate_Hz is None else gauge.rate_Hz.nominal
+    limits = low_kPa * KPA, high_kPa * KPA
+    return GaugeReading(gauge.title, *limits, noise, _step(gauge), rate_Hz, gauge.is_absolute, error)
 
 
 def _pressure(stated_kPa: Quantity | None) -> float | None:
@@ -109,9 +110,3 @@ def _step(gauge: Gauge) -> float | None:
         volts *= gauge.supply_V.nominal
     span_kPa = gauge.range_kPa.span
     return RECORDER_STEP_V * span_kPa / volts * KPA
-
-
-def _rate_Hz(gauge: Gauge) -> float | None:
-    if gauge.rate_Hz is not None:
-        return gauge.rate_Hz.nominal
-    return RECORDER_RATE_HZ if "analog" in gauge.interfaces else None

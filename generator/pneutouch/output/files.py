@@ -83,21 +83,18 @@ def replace_files(files: Mapping[Path, Content], *, key: str = "out") -> None:
         raise _refused(path, error, key) from None
 
 
-def check_own(paths: Iterable[Path], listing: Path, key: str = "out") -> dict[str, Any]:
-    """Entries of the manifest ``listing`` of loose files, by name; none without it. Raises InputError if one of
-    ``paths`` exists otherwise than it states: a person wrote or changed it. ``key`` is the parameter of the place."""
-    listed: dict[str, Any] = {}
-    digests: dict[str, str] = {}
-    if os.path.lexists(listing):
-        try:
-            listed = dict(json.loads(read_bytes(listing, _MOST_MANIFEST, "manifest"))["files"])
-            digests = {name: str(one["sha256"]) for name, one in listed.items()}
-        except (InputError, ValueError, KeyError, TypeError, RecursionError):
-            raise _of_others(listing, key) from None
+def check_own(paths: Iterable[Path], listing: Path, key: str = "out") -> Mapping[str, Any]:
+    """Entries of the manifest ``listing`` of loose files, by name. Raises InputError if one of ``paths`` exists
+    otherwise than it states: a person wrote or changed it. ``key`` is the parameter of the place."""
+    try:
+        stated = json.loads(read_bytes(listing, _MOST_MANIFEST, "manifest")) if os.path.lexists(listing) else {}
+        known = {name: one["sha256"] for name, one in stated.get("files", {}).items()}
+    except (InputError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise _of_others(listing, key) from None
     for path in paths:
-        if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != digests.get(path.name, "")):
+        if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != known.get(path.name, "")):
             raise _of_others(path, key)
-    return listed
+    return {name: stated["files"][name] for name in known}
 
 
 def replace_own(files: Mapping[Path, Content], listing: Path, key: str = "out") -> None:

@@ -142,6 +142,10 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
     thickness = _plate_thickness(scene, port)
     low = -deep - thickness
     side = mount.port_side == "side"
+    # The sides of a cast flange widen over its thickness; printed ones are upright.
+    draft = math.radians(scene.design.mould.draft_deg) if scene.printer.is_casting else 0.0
+    # Greater than a passage that crosses it: two equal cylinders meet in a point.
+    passage = port.passage + (0.25 if side else 0.0)
     return Layout(
         shape=shape,
         flange_width=flange,
@@ -153,11 +157,11 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
         plate_low=low,
         under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
         bolt_circle_radius=bolts,
-        channel_radius=_channel_radius(scene, port),
+        channel_radius=max(0.5 * seat.channel_diameter_mm, passage),
         opening_radius=shape.inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
         port=port,
         port_axis=low + _port_height(scene, port) if side else None,
-        flange_draft=_flange_draft(scene, deep),
+        flange_draft=deep * math.tan(draft),
         ring=inside,
     )
 
@@ -169,13 +173,6 @@ def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
     if not isinstance(seat, CastRing):
         return least, least
     return max(least, web.width_mm + seat.lip_mm), max(least, web.thickness_mm + 2 * seat.lip_mm)
-
-
-def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:
-    """Increase in radius of the sides of a cast flange over its thickness; printed ones are upright."""
-    if not scene.printer.is_casting:
-        return 0.0
-    return thickness * math.tan(math.radians(scene.design.mould.draft_deg))
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
@@ -250,12 +247,6 @@ def _port_height(scene: ResolvedDesign, port: PortShape) -> float:
             scene.seat.shoulder_thickness + port.passage + scene.connector_printer.smallest.wall("rigid").recommended,
         )
     return low
-
-
-def _channel_radius(scene: ResolvedDesign, port: PortShape) -> float:
-    """Radius of the seat's channel; greater than a passage that crosses it: two equal cylinders meet in a point."""
-    channel = 0.5 * scene.seat.channel_diameter_mm
-    return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)
 
 
 def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:

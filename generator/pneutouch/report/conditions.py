@@ -61,18 +61,15 @@ def gauge_range(sheet: SheetData) -> list[str]:
     gauge, reading = sheet.scene.gauge, sheet.gauge
     note = f"{reading.title}, the paper's, assumed"
     if gauge is not None:
-        note = f"{reading.title} ({_breakable(gauge.order_code)})"
+        # A space of no width after every eighth character, at which a narrow column may break the code.
+        code = "\u200b".join(gauge.order_code[start : start + 8] for start in range(0, len(gauge.order_code), 8))
+        note = f"{reading.title} ({code})"
     if gauge is not None and gauge.is_absolute:
         note += (
             f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
             "which must be subtracted"
         )
     return [f"{reading.reads_from_kPa:.4g} to {reading.reads_to_kPa:.4g}", "kPa gauge", note]
-
-
-def _breakable(code: str) -> str:
-    """An order code with a space of no width after every eighth character, at which a narrow column may break it."""
-    return "\u200b".join(code[start : start + 8] for start in range(0, len(code), 8))
 
 
 def gauge_volume(sheet: SheetData) -> str:

@@ -143,13 +143,11 @@ def _shapes(sheet: SheetData) -> SheetBlock:
 
 def _conditions(sheet: SheetData) -> list[SheetBlock]:
     """Blocks on operating conditions, limits of the driving pressure, speed of reading, and environment."""
+    rated = sheet.rating
+    raised = rated.remedy and f"To raise the rated pressure of {rated.pressure_kPa:.1f} kPa: {rated.remedy}."
     left = section("Operating conditions", SheetTable(sheet_tables.operating(sheet), numeric=(1,)))
     right = [
-        *section(
-            "What limits the driving pressure",
-            sheet_tables.limits(sheet),
-            Text("" if sheet.rating.remedy is None else sheet_tables.rating_note(sheet)),
-        ),
+        *section("What limits the driving pressure", sheet_tables.limits(sheet), Text(raised or "")),
         *section("Speed of reading", SheetTable(conditions.speed_rows(sheet))),
     ]
     surroundings = SheetTable([*conditions.detection(sheet), *conditions.environment(sheet)])
@@ -181,7 +179,10 @@ def _use(sheet: SheetData, date: str) -> list[SheetBlock]:
         Columns(
             (
                 [*section("Reliability", untested), *section("Revisions", revisions)],
-                section("Ordering code", SheetTable(print_sheet.code_table(sheet.scene))),
+                section(
+                    "Ordering code",
+                    SheetTable([[code, meaning] for code, meaning in print_sheet.code_fields(sheet.scene)]),
+                ),
             )
         ),
         Columns(

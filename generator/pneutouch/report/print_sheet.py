@@ -180,15 +180,11 @@ def _mounting(scene: ResolvedDesign) -> list[str]:
 
 def part_number(scene: ResolvedDesign) -> str:
     """Part number, such as PNT-R0925-T150-TP-B4-GF-M3."""
-    return "-".join(code for code, _ in _fields(scene))
+    return "-".join(code for code, _ in code_fields(scene))
 
 
-def code_table(scene: ResolvedDesign) -> list[list[str]]:
+def code_fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     """Each field of the part number with its meaning."""
-    return [[code, meaning] for code, meaning in _fields(scene)]
-
-
-def _fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     membrane = scene.design.membrane
     return [
         ("PNT", f"pneumatic touch sensor, {membrane.dome.adjective}"),

@@ -104,11 +104,6 @@ def connections(sheet: SheetData) -> list[list[str]]:
     ]
 
 
-def rating_note(sheet: SheetData) -> str:
-    """Sentence on what would raise the rated pressure."""
-    return f"To raise the rated pressure of {sheet.rating.pressure_kPa:.1f} kPa: {sheet.rating.remedy}."
-
-
 def operating(sheet: SheetData) -> list[list[str]]:
     """Rows (quantity, value, unit, note) on the operating conditions that the figures hold for."""
     design = sheet.scene.design

@@ -231,8 +231,7 @@ class Accepted(Table):
     """[accepted]: print rules whose warnings, not errors, are accepted with a reason each; they become notes."""
 
     remark: ClassVar[str] = (
-        " Only flaws of a print can be accepted, none with which the sensor does not work (driving, envelope, hollows, "
-        "resins, release): follow the remedy of their message."
+        " Only flaws of a print can be accepted: what driving, hollows or resins report is to be mended."
     )
 
     mesh: Reason = _reason("mesh")

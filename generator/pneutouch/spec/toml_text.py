@@ -70,12 +70,8 @@ def _dotted(path: tuple[str, ...]) -> str:
 
 def assignments(changes: Changes) -> list[str]:
     """Changes as texts ``key=value`` for `parse_changes`, a text value unquoted where it reads back unchanged."""
-    return [f"{key}={value if _is_bare(value) else value_text(value)}" for key, value in changes.items()]
-
-
-def _is_bare(value: Any) -> bool:
-    """True if a value is a text that `bare_value` reads back unchanged without quotes."""
-    return isinstance(value, str) and value == value.strip() and bare_value(value) == value
+    bare = {v for v in changes.values() if isinstance(v, str) and v == v.strip() and bare_value(v) == v}
+    return [f"{key}={v if isinstance(v, str) and v in bare else value_text(v)}" for key, v in changes.items()]
 
 
 def design_template(title: str, values: Mapping[str, Any] | None = None, note: str | None = None) -> str:

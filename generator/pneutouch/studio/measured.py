@@ -25,7 +25,7 @@ from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio.form import Question
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
-from pneutouch.workflows.characterize import CharacterizationResult
+from pneutouch.workflows.characterize.campaign import CharacterizationResult
 from pneutouch.workflows.characterize.predicted import doubtful, of_run
 
 _DIGITS = 6

@@ -33,10 +33,17 @@ from pneutouch.studio.measured import (
 )
 from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome, run_calibration
-from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
 from pneutouch.workflows.characterize.campaign import characterize as run_characterize
 from pneutouch.workflows.characterize.campaign import write
-from pneutouch.workflows.characterize.load import reading_text, with_reading
+from pneutouch.workflows.characterize.load import (
+    Reading,
+    load_curves,
+    parse_columns,
+    read_as,
+    reading_text,
+    recognise,
+    with_reading,
+)
 
 _NO_RUNS = (".toml", ".json", ".md", ".html", ".pdf", ".svg", ".png", ".zip", ".3mf", ".step", ".stl", ".glb")
 """Endings of files that may lie next to runs but are none themselves."""

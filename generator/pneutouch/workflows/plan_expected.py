@@ -107,8 +107,8 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     if need <= rig.travel_mm:
         return []
     text = (
-        f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm: "
-        "state a longer one as travel_mm of the rig in `rig`"
+        f"the deepest step and its clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm: state "
+        "a longer one as travel_mm of the rig in `rig`"
     )
     return [PlanViolation("travel", text, "", None, max(depths))]
 

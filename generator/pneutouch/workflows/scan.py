@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -109,7 +108,8 @@ def run_scan(
         _simulated(state, Substrate(matrix, bars, length, state.contact_radius), scan_path, recorder, frequencies)
         for state in states
     ]
-    measured = [_measured(path, frequencies) for path in options.data]
+    read = [(path, read_signal(path)) for path in options.data]
+    measured = [AnalysedSignal(path.name, each, _detected(each, frequencies, str(path))) for path, each in read]
     return ScanRun(
         context, scene, sensor, matrix, bars, options, noise, scan_path, frequencies, (*simulated, *measured)
     )
@@ -227,11 +227,6 @@ def _simulated(
     return AnalysedSignal(
         label, simulated.signal, _detected(simulated.signal, frequencies, label), state, substrate, simulated
     )
-
-
-def _measured(path: Path, frequencies: dict[str, float]) -> AnalysedSignal:
-    signal = read_signal(path)
-    return AnalysedSignal(path.name, signal, _detected(signal, frequencies, str(path)))
 
 
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9

@@ -9,19 +9,17 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.simulate import (
-    ModelDeviation,
+from pneutouch.bench.simulate.curve import ModelDeviation, PressCurves, sensor_pressure
+from pneutouch.bench.simulate.rig import LEAK_SECONDS, MARK, SimulatedSpecimens, encoded, parameters
+from pneutouch.bench.simulate.runs import (
     RecordSamples,
-    SimulatedSpecimens,
     SimulationTruth,
+    aged,
     population,
     simulate_leak,
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.curve import PressCurves, sensor_pressure
-from pneutouch.bench.simulate.rig import LEAK_SECONDS, MARK, encoded, parameters
-from pneutouch.bench.simulate.runs import aged
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.gauge import reading_of

@@ -21,7 +21,7 @@ from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.campaign import CampaignRun, Rig
 from pneutouch.units import KPA
-from tests.bench.blocks import blocks_of
+from tests.bench.reads import blocks_of
 
 RATE = 100.0
 TRUTH = SimulationTruth(rest=10.0)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.workflows.characterize import characterize
+from pneutouch.workflows.characterize.campaign import characterize
 from tests.bench.recordings import READ, Recording, true_figures
 from tests.workflows.characterize.test_recordings import AT_END, asked, figures, read
 

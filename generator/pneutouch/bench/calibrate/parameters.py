@@ -15,7 +15,6 @@ from pneutouch.mechanics.corrected.curves import NODES
 from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
-from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.model_error import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.material import Material
@@ -172,13 +171,10 @@ def _priors(
         [source for source in built if source.acts_on == "wall_thickness"],
         [source for source in built if source.acts_on == "dead_volume"],
     )
-    priors = [_together(group) for group in groups]
+    spread = (float(np.sqrt(sum(float(source.standard[0]) ** 2 for source in group))) for group in groups)
+    origin = ("; ".join(f"{source.name}: {source.origin}" for source in group) for group in groups)
+    priors = list(zip(spread, origin, strict=True))
     offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, the part of the touch that the noise hides")
     spreads, origins = zip(*priors, offset, _friction_prior(sensor, fitted=fitted), strict=True)
     even = [len(group) == 1 and group[0].distribution.endswith("rectangular") for group in groups]
     return np.array(spreads), np.array([*even, False, False]), tuple(origins)
-
-
-def _together(sources: Sequence[UncertaintySource]) -> tuple[float, str]:
-    spread = float(np.sqrt(sum(float(source.standard[0]) ** 2 for source in sources)))
-    return spread, "; ".join(f"{source.name}: {source.origin}" for source in sources)

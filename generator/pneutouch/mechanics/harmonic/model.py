@@ -140,7 +140,8 @@ class HarmonicModel(SolidModel):
         """Deformation gradients, energy, derivatives at the integration points; energy inf if a point is inverted."""
         f = self._field.fields(x)
         gradient = f.reshape(-1, 3, 3)
-        cofactor = _cofactors(gradient)
+        # Cofactors: the derivative of the determinant.
+        cofactor = np.stack([np.cross(gradient[:, (k + 1) % 3], gradient[:, (k + 2) % 3]) for k in range(3)], axis=1)
         volume = np.einsum("ni,ni->n", gradient[:, 0], cofactor[:, 0])
         if not volume.min() > 0.0:
             return PointFields(np.inf, f, f, f)
@@ -179,11 +180,6 @@ class HarmonicModel(SolidModel):
         swelling = np.swapaxes(out, 2, 3).reshape(n_cells, modes * waves, -1)
         sign = self._sign[self.mesh.cells].reshape(n_cells, 1, -1)
         return np.asarray(swelling * sign)
-
-
-def _cofactors(f: Array) -> Array:
-    """Cofactors of matrices (n, 3, 3): the derivative of the determinant."""
-    return np.stack([np.cross(f[:, (k + 1) % 3], f[:, (k + 2) % 3]) for k in range(3)], axis=1)
 
 
 def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:

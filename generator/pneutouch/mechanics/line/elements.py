@@ -122,7 +122,7 @@ def second_over_zeroth(x: Complex) -> Complex:
     x = np.asarray(x, dtype=complex)
     far = np.abs(x) > _FAR
     ratio = np.empty_like(x)
-    ratio[far], ratio[~far] = _asymptotic(x[far]), _fraction(x[~far])
+    ratio[far], ratio[~far] = _series(2, x[far]) / _series(0, x[far]), _fraction(x[~far])
     return ratio
 
 
@@ -134,11 +134,6 @@ def _fraction(x: Complex) -> Complex:
             ratio = 1.0 / (k * twice + ratio)
         value = ratio / (twice + ratio)
     return np.asarray(np.where(x == 0.0, 0.0, value))
-
-
-def _asymptotic(x: Complex) -> Complex:
-    second, zeroth = (_series(order, x) for order in (2, 0))
-    return np.asarray(second / zeroth)
 
 
 def _series(order: int, x: Complex) -> Complex:

@@ -29,7 +29,7 @@ def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
     # A membrane grown onto its connector leaves no gap for a part that is glued in instead.
     slack = scene.fit_clearance - layout.clearance
     inner, flange, low = layout.inner_radius + slack, layout.held_radius - slack, -layout.flange_thickness
-    rim, high = rim_radius(context, layout), top + disc_thickness(layout)
+    rim, high = rim_radius(context, layout), top + max(_LEAST_DISC, _DISC_SHARE * layout.inner_radius)
     return trace(
         (0.0, top),
         [
@@ -51,11 +51,6 @@ def rim_radius(context: CouponContext, layout: Layout) -> float:
     if isinstance(scene.seat, ClampedFlange):
         return layout.outer_radius
     return layout.held_radius - (scene.fit_clearance - layout.clearance)
-
-
-def disc_thickness(layout: Layout) -> float:
-    """Thickness of the disc, mm."""
-    return max(_LEAST_DISC, _DISC_SHARE * layout.inner_radius)
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:

@@ -95,8 +95,7 @@ def run_calibration(
     """Read, fit and write: the report of the fit into ``out``, the calibration into ``root`` (None: the user's folder).
 
     The places of all files are checked before the fit. If a fit cannot be a calibration, the record's ``calibration``
-    is None and its last note says why; with ``options.save`` that raises InputError, as do data that cannot be fitted.
-    """
+    is None and its last note says why; with ``options.save`` that raises InputError, as do data without a fit."""
     library = library or Library.default()
     root = user_folder() if root is None else root
     if options.save is not None:
@@ -159,8 +158,7 @@ def _check_left(
 
 
 def _check_free(path: Path, options: CalibrationOptions, source: CampaignSource) -> None:
-    """Raise InputError if the file holds a calibration of other inputs. Unknown parameters are left to the fit to
-    refuse."""
+    """Raise InputError if the file holds a calibration of other inputs; unknown parameters are left to the fit."""
     if not options.replace and set(options.fit) <= set(NAMES):
         check_unlike(path, source.digest, options.fit, options.hold_out_kPa)
 

@@ -117,11 +117,6 @@ def _correlated(group: CorrelatedParameters) -> CorrelatedRecord:
     )
 
 
-def _further(fitted: CalibrationFit, test: SuggestedTest) -> FurtherRecord:
-    widths = zip(fitted.parameters.fitted, test.half_width, strict=True)
-    return FurtherRecord(test.what, test.gain, {NAMES[k]: _leaving(k, width) for k, width in widths})
-
-
 def _leaving(k: int, deviation: float) -> float | None:
     """Deviation in the unit of records: relative for logarithms, mL, mm, or 1; None if it is not finite."""
     return _number(float(deviation) / (ML if k == DEAD else 1.0))
@@ -186,6 +181,7 @@ class Calibration:
     def record(self) -> CalibrationRecord:
         """The calibration as it is printed and written."""
         seen, fitted = self.fit.observations, self.fit.parameters.fitted
+        names = [NAMES[k] for k in fitted]
         return CalibrationRecord(
             design=self.scene.name,
             sensor=self.sensor,
@@ -205,7 +201,10 @@ class Calibration:
             misses=tuple(self.misses),
             strongly_correlated=tuple(_correlated(group) for group in self.identified.ambiguities),
             unidentified=tuple(NAMES[k] for k in self.identified.unseen),
-            further_tests=tuple(_further(self.fit, test) for test in self.further),
+            further_tests=tuple(
+                FurtherRecord(one.what, one.gain, dict(zip(names, map(_leaving, fitted, one.half_width), strict=True)))
+                for one in self.further
+            ),
             held_out=self.held_out,
             warnings=tuple(self.warnings),
             notes=tuple(self.notes_for_reader),

@@ -77,31 +77,11 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
     rows = []
     for curve in curves:
         for i in curve.indents:
-            times = (i.contact, *i.hold, *i.read, i.release)
-            rows.append(
-                [
-                    *_of(curve),
-                    "indentation",
-                    *(f"{t:.4f}" for t in times),
-                    _cell(i.onset, 5),
-                    f"{i.driving / KPA:.5g}",
-                    "",
-                    "",
-                ]
-            )
+            times = [f"{t:.4f}" for t in (i.contact, *i.hold, *i.read, i.release)]
+            rows.append([*_of(curve), "indentation", *times, _cell(i.onset, 5), f"{i.driving / KPA:.5g}", "", ""])
         for warning in curve.warnings:
-            blank = [""] * 6
-            rows.append(
-                [
-                    *_of(curve),
-                    "warning",
-                    f"{warning.start:.4f}",
-                    f"{warning.end:.4f}",
-                    *blank,
-                    warning.why,
-                    "used" if warning.used else "left out",
-                ]
-            )
+            times = [f"{warning.start:.4f}", f"{warning.end:.4f}", *[""] * 6]
+            rows.append([*_of(curve), "warning", *times, warning.why, "used" if warning.used else "left out"])
     places = ("contact_or_start_s", "hold_start_or_end_s", "hold_end_s", "read_start_s", "read_end_s", "release_s")
     head = (*_RUN, "what", *places, "onset_mm", "driving_kPa", "why", "used")
     return csv_bytes(head, rows)
@@ -263,11 +243,6 @@ def _design_of(data: Path, library: Library) -> tuple[str, dict[str, Any]]:
     return name, parse_changes(campaign.assignments)
 
 
-def _stem(data: Path) -> str:
-    path = data.resolve()
-    return file_name(path.parent.name if path.name == CAMPAIGN else path.stem if path.is_file() else path.name)
-
-
 def _check_resins(data: Path, loaded: CampaignData, library: Library) -> None:
     for place, run in enumerate(loaded.campaign.runs):
         if run.resin != AS_DESIGNED:
@@ -304,6 +279,11 @@ def _hash(loaded: CampaignData, design: Any) -> str:
     # Of a file that cannot be read there is none: it is among the failures.
     files = {run.file: file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
     return input_hash({"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files})
+
+
+def _stem(data: Path) -> str:
+    path = data.resolve()
+    return file_name(path.parent.name if path.name == CAMPAIGN else path.stem if path.is_file() else path.name)
 
 
 def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful") -> Path:

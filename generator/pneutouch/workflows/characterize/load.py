@@ -240,14 +240,18 @@ def load_curves(
     ambient_kPa = campaign.ambient_pressure_kPa
     if ambient_kPa is None:
         ambient_kPa = STANDARD_ATMOSPHERE / KPA if scene is None else scene.design.pneumatics.ambient_pressure_kPa
-    meter = _Meter(progress, sum(_size(folder / run.file) for run in campaign.runs))
-    for run in campaign.runs:
-        size = _size(folder / run.file)
+    sizes = [_size(folder / run.file) for run in campaign.runs]
+    total = max(round(sum(sizes) / _MEGABYTE), 1)
+    for place, run in enumerate(campaign.runs):
+
+        def report(share: float, before: float = sum(sizes[:place]), size: float = sizes[place]) -> None:
+            progress(round((before + share * size) / _MEGABYTE), total)
+
         try:
-            _read(run, campaign, folder, gathered, meter.within(size), ambient_kPa * KPA)
+            _read(run, campaign, folder, gathered, report, ambient_kPa * KPA)
         except PneutouchError as error:
             gathered.failures.append((run.file, str(error)))
-        meter.past(size)
+        report(1.0)
     if not (gathered.curves or gathered.injections or gathered.leaks):
         failures = same_failures([(str(folder / file), text) for file, text in gathered.failures])
         lines = [f"{files}: {text}" for files, text in failures]
@@ -258,37 +262,9 @@ def load_curves(
     as_read = {curve.run.file: curve.run for curve in gathered.curves}
     as_read |= {run.file: run for run, *_ in (*gathered.injections, *gathered.leaks)}
     campaign = campaign.model_copy(update={"runs": [as_read.get(run.file, run) for run in campaign.runs]})
-    return CampaignData(
-        campaign,
-        folder,
-        tuple(gathered.curves),
-        gathered.traces,
-        tuple(gathered.injections),
-        tuple(gathered.leaks),
-        tuple(gathered.failures),
-        tuple(gathered.questions),
-        gathered.sources,
-    )
-
-
-class _Meter:
-    """Progress over all files, in bytes read, reported in megabytes."""
-
-    def __init__(self, progress: Progress, total: int) -> None:
-        self._progress, self._total, self._before = progress, total, 0
-
-    def within(self, size: int) -> Callable[[float], None]:
-        """Function that takes the share read of the current file, of ``size`` bytes."""
-        before = self._before
-        return lambda share: self._report(before + share * size)
-
-    def past(self, size: int) -> None:
-        """Count the current file, of ``size`` bytes, as read."""
-        self._before += size
-        self._report(self._before)
-
-    def _report(self, done: float) -> None:
-        self._progress(round(done / _MEGABYTE), max(round(self._total / _MEGABYTE), 1))
+    g = gathered
+    runs_of = tuple(g.curves), g.traces, tuple(g.injections), tuple(g.leaks)
+    return CampaignData(campaign, folder, *runs_of, tuple(g.failures), tuple(g.questions), g.sources)
 
 
 def _size(path: Path) -> int:

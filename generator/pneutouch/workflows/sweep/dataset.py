@@ -18,7 +18,7 @@ from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models.choice import USUAL
-from pneutouch.output.files import CHARTS_MANIFEST, Content, check_own, replace_own
+from pneutouch.output.files import CHARTS_MANIFEST, MANIFEST, Content, check_own, replace_own
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -230,12 +230,7 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
     check_output(out)
     names = [f"over-{key.replace('.', '_')}" for key in plan.varied] + ["over-point", f"over-{PRESSURE}", "map"]
     pictures = (path for name in names for path in _picture_files(out, name))
-    check_own((out.with_suffix(".csv"), *pictures), _listing(out))
-
-
-def _listing(out: Path) -> Path:
-    """Manifest of the table and the pictures next to a dataset."""
-    return out.with_name(f"{out.stem}-manifest.json")
+    check_own((out.with_suffix(".csv"), *pictures), out.with_name(f"{out.stem}-{MANIFEST}"))
 
 
 def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], list[Path]]:
@@ -249,7 +244,7 @@ def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], l
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
-    replace_own(files, _listing(out))
+    replace_own(files, out.with_name(f"{out.stem}-{MANIFEST}"))
     return list(islice(table_rows(content), shown)), list(files)
 
 

@@ -140,18 +140,6 @@ def _field(key: str) -> FieldInfo | None:
     return None if table is None else table.model_fields.get(name)
 
 
-def takes_flags(key: str) -> bool:
-    """True if the field is a boolean."""
-    field = _field(key)
-    return field is not None and field.annotation is bool
-
-
-def takes_infinity(key: str) -> bool:
-    """True if the field's number may be infinite."""
-    field = _field(key)
-    return field is not None and any(getattr(entry, "allow_inf_nan", False) for entry in field.metadata)
-
-
 def takes_words(key: str) -> bool:
     """True if the field is one of a few words, or a boolean."""
     field = _field(key)
@@ -196,13 +184,13 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
     if not design:
         raise InputError("design: missing", file=where, remedy='name the base design, such as design = "paper-dome"')
     design = design_inside(path.parent, design, file=path, key="design")
-    fixed = {key: _value(where, key, v) for key, v in _flat(where, "set", content.get("set", {})).items()}
+    fixed = {key: _entries(where, key, v, key) for key, v in _flat(where, "set", content.get("set", {})).items()}
     grid = {key: _values(where, key, v) for key, v in _flat(where, "grid", content.get("grid", {})).items()}
     entries = content.get("point", [])
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise InputError("point: must be a list of tables, each headed [[point]]", file=where)
     points = tuple(
-        {key: _value(where, key, v, f"point[{k}]: ") for key, v in _flat(where, f"point[{k}]", entry).items()}
+        {key: _entries(where, key, v, f"point[{k}]: {key}") for key, v in _flat(where, f"point[{k}]", entry).items()}
         for k, entry in enumerate(entries)
     )
     fixed |= _checked(changes)
@@ -211,7 +199,9 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
 
 def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
     """Plan of a grid from texts ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
-    grid = {key: _unwrapped(values) for key, values in parse_over(over).items()}
+    # A single list in brackets is the list of values, because a sweep varies scalars.
+    varied = parse_over(over).items()
+    grid = {key: each[0] if len(each) == 1 and isinstance(each[0], list) else each for key, each in varied}
     return plan_of_grid(design, grid, changes, "over", **options)
 
 
@@ -267,20 +257,10 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
     return values
 
 
-def _unwrapped(values: list[Any]) -> list[Any]:
-    """Values of one axis; a single list in brackets is the list of values, because a sweep varies scalars."""
-    return values[0] if len(values) == 1 and isinstance(values[0], list) else values
-
-
-def _value(where: str, key: str, given: Any, before: str = "") -> Value:
+def _entries(where: str, key: str, given: Any, label: str) -> Value:
     """Value of one field at one point: a number, a text, a boolean, or a list of numbers or of such lists.
 
-    ``before`` is put before the key in messages.
-    """
-    return _entries(where, key, given, f"{before}{key}")
-
-
-def _entries(where: str, key: str, given: Any, label: str) -> Value:
+    ``label`` is the key in messages."""
     if isinstance(given, list):
         return [_entries(where, key, value, f"{label}[{k}]") for k, value in enumerate(given)]
     return _scalar(where, key, given, label)
@@ -288,9 +268,11 @@ def _entries(where: str, key: str, given: Any, label: str) -> Value:
 
 def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str | bool:
     """A value that JSON can hold: infinity, if the field takes it, is the text "inf". Raises InputError for others."""
-    allowed = takes_flags(key) if isinstance(given, bool) else isinstance(given, str) or is_finite(given)
-    if given == math.inf and takes_infinity(key):
+    field = _field(key)
+    if given == math.inf and field and any(getattr(entry, "allow_inf_nan", False) for entry in field.metadata):
         return "inf"
+    is_flag = field is not None and field.annotation is bool
+    allowed = is_flag if isinstance(given, bool) else isinstance(given, str) or is_finite(given)
     if not allowed:
         raise InputError("must be a finite number or a name", file=where, key=label, value=given)
     return given  # type: ignore[no-any-return]
@@ -313,7 +295,7 @@ def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
 
 
 def _checked(changes: Changes | None) -> Settings:
-    return {key: _value("set", key, value) for key, value in (changes or {}).items()}
+    return {key: _entries("set", key, value, key) for key, value in (changes or {}).items()}
 
 
 def _text(where: str, key: str, given: Any) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -119,7 +119,9 @@ def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda s
         files |= {f"stl/{body.name}.stl": stl(body) for part in job.parts for body in part.on_tray()}
         progress("view")
         files["tray.svg" if len(layout.jobs) == 1 else f"tray-{layout.jobs.index(job) + 1}.svg"] = tray_svg(layout, job)
-    files["labels.csv"], files["labels.md"] = _labels_csv(record.labels), _labels_md(layout, record, checked)
+    names = [field.name for field in fields(LabelRow)]
+    files["labels.csv"] = csv_bytes(names, [[getattr(row, name) for name in names] for row in record.labels])
+    files["labels.md"] = _labels_md(layout, record, checked)
     progress("files")
     about = with_manifest(
         files,
@@ -242,12 +244,6 @@ def rows(layout: TrayLayout) -> tuple[LabelRow, ...]:
     return tuple(row for job in layout.jobs for part in job.parts for row in _rows(layout, job, part))
 
 
-def _labels_csv(listed: Sequence[LabelRow]) -> bytes:
-    """Label list for a spreadsheet or a label printer."""
-    names = [field.name for field in fields(LabelRow)]
-    return csv_bytes(names, [[getattr(row, name) for name in names] for row in listed])
-
-
 def _labels_md(layout: TrayLayout, record: TrayRecord, findings: tuple[TrayFinding, ...] = ()) -> bytes:
     """Label list to print and stick on: a head, a table a job, a legend of marks, and findings of the rules."""
     printer, head = layout.printer, layout.order.tray.tray
@@ -306,7 +302,9 @@ def _job_lines(layout: TrayLayout, job: TrayJob, record: TrayRecord, number: int
     shares = fill(job, layout.printer)
     listed = [row for row in record.labels if row.job == number]
     table = [
-        f"| **{row.label}** | {row.body} | {_value(row)} | {_resin(row)} | "
+        # A mix with its base resins, without which a digital material's code is ambiguous.
+        f"| **{row.label}** | {row.body} | {_value(row)} | {row.material}"
+        f"{f' ({row.base_resins})' if ' + ' in row.base_resins else ''} | "
         f"{row.x_mm:.1f}, {row.y_mm:.1f} | {row.mass_g:.2f} | {_mark(row)} |"
         for row in listed
     ]
@@ -328,11 +326,6 @@ def _job_lines(layout: TrayLayout, job: TrayJob, record: TrayRecord, number: int
 def _value(row: LabelRow) -> str:
     varied = f", {row.varied.partition('.')[2]} = {row.value}" if row.varied else ""
     return markdown_escaped(f"{row.design}{varied}, copy {row.copy}")
-
-
-def _resin(row: LabelRow) -> str:
-    """Text for the resin; for a mix with its base resins, without which a digital material's code is ambiguous."""
-    return f"{row.material} ({row.base_resins})" if " + " in row.base_resins else row.material
 
 
 def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
