@@ -99,7 +99,7 @@ def check_own(paths: Iterable[Path], listing: Path, key: str = "out") -> Mapping
 
 def replace_own(files: Mapping[Path, Content], listing: Path, key: str = "out") -> None:
     """Write loose files and their manifest. Raises InputError as `check_own` and `replace_files`."""
-    entries = check_own(files, listing, key)
+    entries = dict(check_own(files, listing, key))
 
     def counted(name: str, content: Content) -> Iterator[bytes | memoryview]:
         size, hashed = 0, hashlib.sha256()
