@@ -6,34 +6,68 @@ import re
 
 import pytest
 
+from pneutouch.catalogue import load_scene
 from pneutouch.catalogue.library import PACKAGE
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.subject import subject_of
+from pneutouch.parts import assemble
+from pneutouch.printability.rules.feature_sizes import CHECKS
+from pneutouch.printability.view import PrintView
 
 
-def on_connector(changes):
-    return {
-        one.rule: one.fix for one in evaluate("paper-dome", changes, model="atlas").findings if one.body == "connector"
-    }
+def sizes(design, changes):
+    """Rule and size in mm of what is too small on the connector of a design."""
+    view = PrintView(subject_of(assemble(load_scene(design, changes))))
+    found = [one for check in CHECKS.values() for one in check(view)]
+    return {(one.rule, round(one.excess.measured, 2)) for one in found if one.body in ("connector", "plug")}
+
+
+def on_connector(changes, design="paper-dome"):
+    """The remedies of the findings on sizes of the connector, by rule and size in mm."""
+    findings = evaluate(design, changes, model="auto" if design in ("cast-dome", "graded-dome") else "atlas").findings
+    small = [one for one in findings if one.body in ("connector", "plug") and one.rule in CHECKS]
+    return {(one.rule, round(one.excess.measured, 2)): one.fix for one in small}
+
+
+NAMED = re.compile(r"((?:connector|print)\.\w+) = (\S+)(?: or (\S+))?")
 
 
 @pytest.mark.parametrize(
-    "changes",
+    ("design", "changes", "ended"),
     [
-        {},
-        {"connector.port": "luer-female"},
-        {"connector.material": "ClearResin", "print.connector_profile": "sla-resin"},
+        ("paper-dome", {}, {"connector.port"}),
+        ("paper-dome", {"connector.port": "luer-female"}, {"connector.port"}),
+        (
+            "paper-dome",
+            {"connector.material": "ClearResin", "print.connector_profile": "sla-resin"},
+            {"connector.port"},
+        ),
+        # The screws' holes are the mount's: no port ends them, and those of a clamp nothing.
+        ("fingertip-dome", {}, {"connector.port", "connector.mount"}),
+        ("cast-dome", {}, {"connector.port"}),
+        ("graded-dome", {}, {"connector.port"}),
+        ("agilus-dome", {}, {"connector.port"}),
     ],
 )
-def test_every_port_that_a_remedy_names_ends_its_finding(changes):
-    fixes = on_connector(changes)
-    for rule in {"walls", "channels"} & fixes.keys():
-        (named,) = re.findall(r"connector\.port = (\S+) or ([^\s,]+)", fixes[rule])
-        for port in named:
-            assert rule not in on_connector({**changes, "connector.port": port})
+def test_every_part_that_a_remedy_names_ends_its_finding_and_no_other_is_proposed(design, changes, ended):
+    fixes, keys = on_connector(changes, design), set()
+    for finding, fix in fixes.items():
+        named = NAMED.findall(fix)
+        assert re.findall(r"(?:connector|print)\.\w+", fix) == [key for key, *_ in named]
+        for key, *names in named:
+            keys.add(key)
+            for name in filter(None, names):
+                assert finding not in sizes(design, {**changes, key: name})
+    assert keys == ended
+
+
+def walls(changes):
+    """The remedy of the thinnest wall; empty without one."""
+    return next((fix for (rule, _), fix in on_connector(changes).items() if rule == "walls"), "")
 
 
 def test_ports_of_the_designs_own_tube_are_named_first():
-    assert re.findall(r"connector\.port = (\S+)", on_connector({})["walls"]) == ["push-in-4"]
+    assert re.findall(r"connector\.port = (\S+)", walls({})) == ["push-in-4"]
 
 
 def test_a_tube_that_the_design_names_goes_with_every_port_that_a_remedy_names(tmp_path, monkeypatch):
@@ -42,12 +76,12 @@ def test_a_tube_that_the_design_names_goes_with_every_port_that_a_remedy_names(t
     of_3x2 = (PACKAGE / "parts/ports/barb-3x2.toml").read_text()
     (tmp_path / "parts/ports/mine.toml").write_text(of_3x2.replace('tubes = ["3x2"]', 'tubes = ["4x3"]'))
     named = {"connector.port": "mine", "pneumatics.tube": "4x3"}
-    assert re.findall(r"connector\.port = ([^,]+)", on_connector(named)["walls"]) == ["thread-M5"]
-    assert "walls" not in on_connector({**named, "connector.port": "thread-M5"})
+    assert re.findall(r"connector\.port = ([^,]+)", walls(named)) == ["thread-M5"]
+    assert not walls({**named, "connector.port": "thread-M5"})
 
 
 def test_a_port_of_the_user_that_is_not_valid_is_not_proposed_and_stops_nothing(tmp_path, monkeypatch):
     monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
     (tmp_path / "parts/ports").mkdir(parents=True)
     (tmp_path / "parts/ports/a-bad-one.toml").write_text('family = "barb"\n')
-    assert "a-bad-one" not in on_connector({})["walls"]
+    assert "a-bad-one" not in walls({})

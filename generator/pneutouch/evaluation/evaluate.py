@@ -81,10 +81,10 @@ class Evaluation:
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """Findings of the print rules, with the ports that end them."""
-        from pneutouch.evaluation.subject import with_ports
+        """Findings of the print rules, with the parts that end them."""
+        from pneutouch.evaluation.subject import with_parts
 
-        return with_ports(self.findings_alone, self.scene)
+        return with_parts(self.findings_alone, self.scene)
 
     @cached_property
     def findings_alone(self) -> list[Finding]:

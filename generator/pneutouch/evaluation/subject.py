@@ -6,13 +6,13 @@ Findings of the print rules on a sensor and, where its membrane is cast, on its 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.catalogue import KINDS, ResolvedDesign
-from pneutouch.catalogue.library import PACKAGE
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.catalogue.library import Library, shipped_root
+from pneutouch.catalogue.scene import check_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.cast_ring import RING
@@ -21,10 +21,9 @@ from pneutouch.parts.layout import Layout
 from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.measure.mould import LEAVES
 from pneutouch.printability.rulebook import check_mould, mould_subject
-from pneutouch.printability.rules.feature_sizes import CHECKS
+from pneutouch.printability.rules.feature_sizes import ALIKE, CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
-from pneutouch.spec.read import read_toml
 
 _HINTS = {
     "membrane": {
@@ -33,10 +32,8 @@ _HINTS = {
         "resins": "take another membrane.material or print.profile",
     },
     "connector": {
-        "walls": "take another connector.port, or another connector.seat or print.connector_profile",
-        "pins": "take another connector.port, or another print.connector_profile",
-        "holes": "drill after printing, or take another connector.port, or another print.connector_profile",
-        "channels": "push a drill or wire through after printing, or take another connector.port",
+        "holes": "drill after printing",
+        "channels": "push a drill or wire through after printing",
         "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
         "resins": "take another connector.material or print.connector_profile",
     },
@@ -141,53 +138,68 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
     return sorted((_accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
 
 
-_PORT, _NAMED = "another connector.port", 2
-"""Words of a remedy that proposes another port, and number of ports that are named in their place."""
+_NAMED = 2
+"""Number of parts that a remedy names."""
 
-_OF_PORTS = ("walls", "pins", "holes", "channels")
-"""Rules whose findings on the connector another port may resolve."""
+_FIELDS = {"ports": "port", "mounts": "mount", "printers": "connector_printer"}
+_OTHERS = {"connector.port": "ports", "connector.mount": "mounts", "print.connector_profile": "printers"}
+"""Settings that may end a finding on the connector's sizes, in the order in which they are tried, with their kinds."""
 
 
-def with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
-    """Findings whose remedies name ports, where some resolve them: each was drawn and checked. Ports that take the
-    design's tube come first; where the design names a tube, only these are named."""
-    broken = {one.rule for one in findings if _names_port(one)}
-    if not broken:
-        return findings
-    ending: dict[str, list[str]] = {rule: [] for rule in broken}
-    tubes, stated = dict(_shipped("tubes")), scene.design.pneumatics.tube
-    own = [name for name, tube in tubes.items() if tube.title == scene.tube.title]
-    for name, port in sorted(_shipped("ports"), key=lambda entry: not set(own) & set(entry[1].tubes)):
-        if name == scene.design.connector.port or stated not in (None, *port.tubes):
-            continue
-        if all(len(names) == _NAMED for names in ending.values()):
+def with_parts(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
+    """Findings on sizes of the connector, with remedies that name parts which end them: each was drawn and checked.
+
+    Mounts are tried for what no port ends, and printers for the rest. Ports that take the design's tube come first;
+    where the design names a tube, only these are named."""
+    thin = [one for one in findings if one.body in ("connector", "plug") and one.rule in CHECKS and one.excess]
+    fixes: dict[Finding, str] = {}
+    for key in _OTHERS:
+        fixes |= _ending(key, [one for one in thin if one not in fixes], thin, scene)
+    return [replace(one, fix=fixes.get(one, one.fix)) for one in findings]
+
+
+def _ending(key: str, left: list[Finding], thin: list[Finding], scene: ResolvedDesign) -> dict[Finding, str]:
+    """Remedies of those findings ``left`` that another part for ``key`` ends: it leaves only others of ``thin``."""
+    ending: dict[Finding, list[str]] = {one: [] for one in left}
+    for name, other in _others(scene, key):
+        open_ones = [one for one, names in ending.items() if len(names) < _NAMED]
+        if not open_ones:
             break
-        connector = scene.design.connector.model_copy(update={"port": name})
-        design = scene.design.model_copy(update={"connector": connector})
         with suppress(InputError):
-            subject = subject_of(
-                assemble(replace(scene, design=design, port=port, tube=tubes[stated or port.tubes[0]]))
-            )
-            items = tuple(item for item in subject.items if item.body.name == "connector")
-            view = PrintView(replace(subject, items=items, joints=()), None)
-            for rule, names in ending.items():
-                names += [] if len(names) == _NAMED or CHECKS[rule](view) else [name]
-    return [_with_port(one, ending[one.rule]) if _names_port(one) else one for one in findings]
+            check_scene(other)
+            items = tuple(item for item in subject_of(assemble(other)).items if item.body.name == left[0].body)
+            view = PrintView(PrintSubject(items))
+            found = {rule: CHECKS[rule](view) for rule in {one.rule for one in open_ones}}
+            for one in open_ones:
+                rest = [each for each in thin if each is not one and each.rule == one.rule]
+                if all(any(_same_size(new, old) for old in rest) for new in found[one.rule]):
+                    ending[one].append(name)
+    by_hand = {rule: f"{fix}, or " for rule, fix in _HINTS["connector"].items()}
+    return {
+        one: f"{by_hand.get(one.rule, '')}take {key} = {' or '.join(names)}" for one, names in ending.items() if names
+    }
 
 
-def _shipped(kind: str) -> Iterator[tuple[str, Any]]:
-    """Name and content of every shipped part of a kind; without a user's parts, which must not change a build."""
-    for path in sorted((PACKAGE / KINDS[kind].folder).glob("*.toml")):
-        yield path.stem, KINDS[kind].validate(read_toml(path), str(path))
+def _same_size(one: Finding, other: Finding) -> bool:
+    assert one.excess is not None and other.excess is not None
+    return abs(one.excess.measured - other.excess.measured) < ALIKE
 
 
-def _with_port(finding: Finding, names: list[str]) -> Finding:
-    fix = finding.fix.replace(_PORT, f"connector.port = {' or '.join(names)}") if names else finding.fix
-    return replace(finding, fix=fix)
+def _others(scene: ResolvedDesign, key: str) -> Iterator[tuple[str, ResolvedDesign]]:
+    """The design with each other shipped part in place of that of ``key``; a port comes with a tube that it takes.
 
-
-def _names_port(finding: Finding) -> bool:
-    return finding.body == "connector" and finding.rule in _OF_PORTS and _PORT in finding.fix
+    A user's parts are left out: they must not change a build."""
+    (table, field), kind = key.split("."), _OTHERS[key]
+    chosen, stated, shipped = getattr(scene.design, table), scene.design.pneumatics.tube, Library((shipped_root(),))
+    parts = {name: shipped.load(kind, name) for name in sorted(shipped.paths(kind))}
+    tubes = {name: shipped.load("tubes", name) for name in shipped.paths("tubes")} if kind == "ports" else {}
+    own = {name for name, tube in tubes.items() if tube.title == scene.tube.title}
+    for name in sorted(parts, key=lambda name: not own & set(getattr(parts[name], "tubes", ()))):
+        if name == getattr(chosen, field) or (kind == "ports" and stated not in (None, *parts[name].tubes)):
+            continue
+        design = scene.design.model_copy(update={table: chosen.model_copy(update={field: name})})
+        more = {"tube": tubes[stated or parts[name].tubes[0]]} if kind == "ports" else {}
+        yield name, replace(scene, design=design, **{_FIELDS[kind]: parts[name]}, **more)
 
 
 def _accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:

@@ -19,7 +19,7 @@ from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.spec.printer import FeatureSize
 
-_ALIKE = 0.02
+ALIKE = 0.02
 """Places of one kind and severity whose sizes differ by less (mm) are reported once."""
 
 
@@ -63,13 +63,11 @@ def wording(size: float, limit: float, severity: Severity) -> str:
 
 
 def _alike(broken: list[tuple[Severity, float, ThinPlace]]) -> Iterator[tuple[Severity, float, list[ThinPlace]]]:
-    """Severity, limit and places that are alike (see `_ALIKE`), in the order of the narrowest."""
+    """Severity, limit and places that are alike (see `ALIKE`), in the order of the narrowest."""
     left = list(broken)
     while left:
         severity, least, first = left[0]
-        same = [
-            b for b in left if b[0] == severity and abs(b[2].size - first.size) < _ALIKE and b[2].kind == first.kind
-        ]
+        same = [b for b in left if b[0] == severity and abs(b[2].size - first.size) < ALIKE and b[2].kind == first.kind]
         yield severity, least, [place for _, _, place in same]
         left = [b for b in left if b not in same]
 
