@@ -13,6 +13,8 @@ from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.rating import RATED_SHARE, rated_pressure
 from pneutouch.mechanics.response import Figures
 from pneutouch.selection.problem import SelectionProblem
+from pneutouch.spec.design import Membrane
+from pneutouch.spec.fields import declaration
 
 
 def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -> Array:
@@ -218,6 +220,7 @@ _STARTS, _HALVINGS, _FIRST_STEP = 6, 12, 0.15
 logarithms of radius and wall, and in rated pressures."""
 
 
+_RADII_MM = declaration(Membrane, "inner_radius_mm").low, declaration(Membrane, "inner_radius_mm").high
 _ENOUGH = 0.02
 """Margin kept for the rounding to a hundredth of a millimetre, if there is as much."""
 
@@ -242,8 +245,9 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
         # Onto the limits, on which the best lies more often than not.
         if problem.wall_thickness is None:
             wall = np.maximum(wall, problem.least_wall)
-        if problem.max_diameter is not None and problem.inner_radius is None:
-            radius = np.minimum(radius, np.maximum(0.5 * problem.max_diameter - wall, wall))
+        if problem.inner_radius is None:
+            largest = np.inf if problem.max_diameter is None else np.maximum(0.5 * problem.max_diameter - wall, wall)
+            radius = np.minimum(np.clip(radius, *_RADII_MM), largest)
         resin = np.broadcast_to(here.resin[:, None], radius.shape)
         around = evaluated(problem, *(part.ravel() for part in (resin, radius, wall, pressure)))
         worst = _worst(problem, around).reshape(radius.shape)
@@ -258,7 +262,10 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
 def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
     """Candidates, and with each the nine sizes around it in hundredths of a millimetre."""
     by = 0.01 * np.arange(-1.0, 2.0)
-    radius, wall = np.round(pool.radius, 2)[:, None, None] + by, np.round(pool.wall, 2)[:, None, None] + by[:, None]
+    radius, wall = (
+        np.clip(np.round(pool.radius, 2)[:, None, None] + by, *_RADII_MM),
+        np.round(pool.wall, 2)[:, None, None] + by[:, None],
+    )
     if problem.inner_radius is not None:
         radius = np.full((1, 1, 1), problem.inner_radius)
     if problem.wall_thickness is not None:
