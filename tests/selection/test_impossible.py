@@ -19,8 +19,9 @@ from pneutouch.selection.candidates import evaluated
 from pneutouch.selection.choose import missed_percent, rounded
 from pneutouch.spec.target import Given
 from pneutouch.workflows.select.base import base_scene
+from pneutouch.workflows.select.document import NO_RELIEF
 from pneutouch.workflows.select.processes import offers
-from pneutouch.workflows.select.search import relaxations, working_changes
+from pneutouch.workflows.select.search import relief_of
 from tests.selection.targets import FINGERTIP, answer, document, target
 
 RUNNER = CliRunner()
@@ -151,6 +152,10 @@ def test_what_there_is_not_is_named(tables, said):
         pytest.param("--sensitivity 4.9 --max-diameter 9", "setting.assignments", marks=pytest.mark.slow),
         pytest.param("--sensitivity 3 --wall 2.5", "given.wall_thickness_mm", marks=pytest.mark.slow),
         pytest.param("--sensitivity 3 --inner-radius 3", "given.inner_radius_mm", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 8 --process polyjet", "setting.processes", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 12 --process casting", "setting.tube_length_mm", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 3 --wall 2.5 --process polyjet", "given.wall_thickness_mm", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 8 --profile objet260-connex", "setting.profile", marks=pytest.mark.slow),
     ],
 )
 def test_each_change_said_to_be_enough_is_enough_as_it_is_typed(typed, field):
@@ -158,8 +163,10 @@ def test_each_change_said_to_be_enough_is_enough_as_it_is_typed(typed, field):
     result = RUNNER.invoke(app, ["select", *words, "--json"])
     assert result.exit_code == 1, result.output
     said = json.loads(result.stdout)
-    assert said["nearest"]["sensitivity_kPa_per_N"] is not None
-    named = [*said["single_changes"], *said["dropped_requirements"]]
+    named = []
+    for one in said.get("processes", {"": said}).values():
+        assert one["nearest"]["sensitivity_kPa_per_N"] is not None
+        named += [*one["single_changes"], *one["dropped_requirements"]]
     assert field in [one["field"] for one in named]
     for one in named:
         if one["field"] is not None:
@@ -187,4 +194,9 @@ def test_other_printers_and_processes_are_those_that_make_the_resins(library):
 def test_with_an_open_gauge_no_change_is_named():
     """The trials would hold for one gauge only."""
     run = replace(answer({**FINGERTIP, "force_range_N": 150.0}), gauges=(GaugeTrial("a", "A", False, "why", None),))
-    assert not list(working_changes(run, "test", None)) and not relaxations(run, "test", None)
+    assert relief_of(run, run.target, "test", None) == NO_RELIEF
+
+
+def test_no_radius_that_a_design_may_not_have_is_searched():
+    run = answer({"sensitivity_kPa_per_N": 0.001})
+    assert run.rejected and max(float(one.choice.pool.radius[0]) for one in run.rejected) <= 100.0

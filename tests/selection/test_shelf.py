@@ -8,7 +8,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.base import read_shelf
-from pneutouch.workflows.select.processes import offers, select
+from pneutouch.workflows.select.processes import offers, select, select_processes
 from pneutouch.workflows.select.search import working_changes
 
 FREE = {"target": {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0}, "given": {"inner_radius_mm": 9.25}}
@@ -36,6 +36,17 @@ def test_only_printers_of_the_shelf_are_offered(library):
     assert offers(run.base, run.target, library, others=True) == ["casting"]
     free = chosen(library)
     assert offers(free.base, free.target, library) == ["j735"]
+
+
+def test_a_process_whose_printer_is_not_on_the_shelf_is_left_out_for_that(library):
+    shelf, setting = {"printers": ["j735"]}, {"processes": ["casting"]}
+    run = select_processes(validate(Target, {**FREE, "have": shelf, "setting": setting}, "target"), "target", library)
+    assert {"silicone-casting", "j735"} <= set(run.left_out["casting"].split())
+    resins = {"materials": ["DragonSkin20"]}
+    with pytest.raises(InputError) as caught:
+        chosen(library, have={"printers": ["objet260-connex"]}, given={**FREE["given"], **resins})
+    # No option is proposed that the shelf refuses.
+    assert "`" not in caught.value.remedy
 
 
 def test_a_change_that_is_named_takes_a_port_of_the_shelf(library):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 from pneutouch.catalogue.library import Library
@@ -10,10 +11,11 @@ from pneutouch.spec.material import Casting, Material
 from pneutouch.spec.printer import Printer
 
 
-def makers(material: Material, library: Library) -> dict[str, Printer]:
-    """The profiles that make a material, by name; invalid files are left out."""
+def makers(material: Material, library: Library, among: Collection[str] | None = None) -> dict[str, Printer]:
+    """The profiles (those ``among``, if given) that make a material, by name; invalid files are left out."""
     printers = library.readable("printers", Printer)
-    return {name: one for name, one in printers.items() if one.mode_for(material) is not None}
+    named = printers if among is None else among
+    return {name: one for name, one in printers.items() if name in named and one.mode_for(material) is not None}
 
 
 def casting_missing(printer: Printer, material: Material) -> bool:
@@ -47,9 +49,13 @@ def cannot_run(
     return InputError(f"the {printer.title} cannot run {material.label}", remedy=remedy, **place)
 
 
-def made_by(material: Material, library: Library, setting: str) -> str:
-    """Remedy that names the profiles that make a material, with their processes; if none does, what to add."""
-    profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
+def made_by(material: Material, library: Library, setting: str, among: Collection[str] | None = None) -> str:
+    """Remedy that names the profiles (those ``among``, if given) that make a material, with their processes; if none
+    does, what to add."""
+    profiles = [f"{name} (process {one.process})" for name, one in makers(material, library, among).items()]
+    others = makers(material, library)
+    if others and not profiles:
+        return f"{material.label} takes {' or '.join(others)}, which is not on the shelf"
     if not profiles:
         casts = next(
             (one for one in library.readable("printers", Printer).values() if casting_missing(one, material)), None

@@ -13,12 +13,12 @@ from pneutouch.units import KPA
 from pneutouch.wording import counted, tenths_below
 from pneutouch.workflows.select.document import (
     Typed,
-    change_lines,
-    dropped_lines,
     graded_missed,
     headline,
+    in_file,
     missed_text,
     rated_warning,
+    relief_lines,
     remarks,
     search_notes,
 )
@@ -39,11 +39,10 @@ HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 def answer_text(answer: TargetAnswer, typed: Typed) -> str:
     """The answer to a target of any kind; ``typed`` writes a field to change as an option."""
     if isinstance(answer.run, ProcessSelection):
-        return processes_text(answer.run)
+        return processes_text(answer.run, typed)
     if isinstance(answer.run, GradedSelectionRun):
         return graded_text(answer.run)
-    enough = [*dropped_lines(answer.run, answer.options, typed), *change_lines(answer.changes, typed)]
-    return selection_text(answer.run, enough)
+    return selection_text(answer.run, relief_lines(answer.run, answer.relief, typed))
 
 
 def selection_text(selection: SelectionRun, enough: Sequence[str] = ()) -> str:
@@ -104,10 +103,10 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
     ]
 
 
-def processes_text(selection: ProcessSelection) -> str:
+def processes_text(selection: ProcessSelection, typed: Typed = in_file) -> str:
     """A row for the best design of each process, and why others have none."""
     head, rows = processes_table(selection)
-    return "\n".join([*([table_text(head, rows), ""] if rows else []), *processes_lines(selection)])
+    return "\n".join([*([table_text(head, rows), ""] if rows else []), *processes_lines(selection, typed)])
 
 
 def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[str]]]:
@@ -121,8 +120,9 @@ def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[s
     return [HEAD[0], "process", *HEAD[1:]], rows
 
 
-def processes_lines(selection: ProcessSelection) -> list[str]:
-    """Profile and confirmation of each best design, and why a process has none."""
+def processes_lines(selection: ProcessSelection, typed: Typed = in_file) -> list[str]:
+    """Profile and confirmation of each best design, and why a process has none; what makes one possible if all have
+    none."""
 
     lines = []
     for process, run in selection.best:
@@ -135,7 +135,8 @@ def processes_lines(selection: ProcessSelection) -> list[str]:
         if not run.answer.designs:
             nearest = run.answer.nearest
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
-            lines.append(f"{process}: {headline(run)}{why}")
+            enough = [] if process not in selection.reliefs else relief_lines(run, selection.reliefs[process], typed)
+            lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough)]
             lines += [f"{process}: left out: {name}: {reason}" for name, reason in run.left_out.items()]
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
 

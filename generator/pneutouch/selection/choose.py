@@ -75,7 +75,7 @@ class Candidate:
 
     @property
     def binding(self) -> str:
-        """The limit or requirement with the least margin; the sensitivity is met exactly and does not count."""
+        """The limit or requirement with the least margin; the sensitivity, which the search aims at, does not count."""
         return min((name for name in self.margins if name != "sensitivity"), key=lambda name: self.margins[name])
 
 

@@ -91,7 +91,7 @@ def _by_process(selection: ProcessSelection, document: Mapping[str, Any], page: 
         headline=f"{len(row) or 'none'} of {searched} processes with a design that meets the target",
         notes=[],
         cards=[card for card in cards if card is not None],
-        remarks=processes_lines(selection),
+        remarks=processes_lines(selection, typed),
         chart=None,
         table=PageTable("The best design of each process", head, rows) if rows else None,
     )
@@ -209,11 +209,11 @@ def _cards(run: SelectionRun, found: TargetAnswer, page: CandidateStates) -> lis
     if answer.nearest is not None:
         misses = f"it misses: {missed_text(run, answer.nearest)}"
         cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
-    for change in found.changes:
+    for change in found.relief.changes:
         option = typed(change.field, change.value)
         note = f"with {option} it meets the target"
         cards.append(card(change.run.answer.designs[0], "changed", option, note=note, run=change.run))
-    for dropped, line in zip(answer.dropped, dropped_lines(run, found.options, typed), strict=False):
+    for dropped, line in zip(answer.dropped, dropped_lines(run, found.relief, typed), strict=False):
         cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 

@@ -270,7 +270,7 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
     if not runs:
         limited = pair or target.given.materials or target.have.materials
         named = {name: m for name, m in loaded.items() if m.kind == "elastomer"} if limited else {}
-        raise _runs_none(printer, named, where, library)
+        raise _runs_none(printer, named, where, library, target.have.printers)
     return runs[0]
 
 
@@ -301,13 +301,18 @@ def _check_shelf(target: Target, profile: str, where: str, library: Library) -> 
         )
 
 
-def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:
-    """Error for a printer that runs none of the materials ``named``, or no elastomer at all if none is named."""
+def _runs_none(
+    printer: Printer, named: dict[str, Material], where: str, library: Library, shelf: list[str] | None
+) -> InputError:
+    """Error for a printer that runs none of the materials ``named``, or no elastomer at all if none is named; its
+    remedies take the printers of the ``shelf``, all if that is None."""
     for name, material in named.items():
         if casting_missing(printer, material):
             return uncast(printer, material, str(library.paths("materials")[name]))
-    takes = [made_by(material, library, "`profile`") for material in named.values()]
-    processes = dict.fromkeys(one.process for material in named.values() for one in makers(material, library).values())
+    takes = [made_by(material, library, "`profile`", shelf) for material in named.values()]
+    processes = dict.fromkeys(
+        one.process for material in named.values() for one in makers(material, library, shelf).values()
+    )
     if processes:
         takes.append(f"or give `processes` {' or '.join(processes)}")
     problem = f"the {printer.title} runs {'none of ' if named else ''}{', '.join(named) or 'no known elastomer'}"

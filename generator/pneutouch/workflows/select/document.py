@@ -37,8 +37,6 @@ from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, con
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
-_NONE: Mapping[str, Any] = MappingProxyType({})
-
 
 class WorkingChange(NamedTuple):
     """A change of one field of the target, ``table.key``, with which designs meet it: its value and the selection."""
@@ -59,11 +57,19 @@ RelaxedValue = tuple[str, float]
 """Field of a target, ``table.key``, and its value."""
 
 
-def selected(
-    selection: SelectionRun, changes: Sequence[WorkingChange] = (), options: Mapping[str, RelaxedValue] = _NONE
-) -> SelectionRecord:
-    """Selection as a record, as ``select`` prints it; ``changes`` are single ones that make a design possible,
-    ``options`` fields that relax a requirement, by its name."""
+class Relief(NamedTuple):
+    """For a target that no design meets: single changes that make one possible, and by requirement the value that
+    relaxes it."""
+
+    changes: Sequence[WorkingChange] = ()
+    options: Mapping[str, RelaxedValue] = MappingProxyType({})
+
+
+NO_RELIEF: Relief = Relief()
+
+
+def selected(selection: SelectionRun, relief: Relief = NO_RELIEF) -> SelectionRecord:
+    """Selection as a record, as ``select`` prints it."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return SelectionRecord(
@@ -93,10 +99,11 @@ def selected(
         dropped_requirements=tuple(
             DroppedChoice(each.requirement, would_need(selection, each), field, value, _choice(selection, each.best))
             for each in answer.dropped
-            for field, value in [options.get(each.requirement, (None, None))]
+            for field, value in [relief.options.get(each.requirement, (None, None))]
         ),
         single_changes=tuple(
-            SingleChange(each.field, each.value, _choice(each.run, each.run.answer.designs[0])) for each in changes
+            SingleChange(each.field, each.value, _choice(each.run, each.run.answer.designs[0]))
+            for each in relief.changes
         ),
         rejected=tuple(
             RejectedChoice(each.rule, each.reason, _choice(selection, each.choice)) for each in selection.rejected
@@ -237,24 +244,23 @@ def in_file(field: str, value: Any) -> str:
     return f"{field} = {value_text(value)}"
 
 
-def dropped_lines(
-    selection: SelectionRun, options: Mapping[str, RelaxedValue] = _NONE, typed: Typed = in_file
-) -> list[str]:
+def dropped_lines(selection: SelectionRun, relief: Relief = NO_RELIEF, typed: Typed = in_file) -> list[str]:
     """Lines on each single requirement without which a design fits, with the value that can be reached; or one line
     that there is none."""
     lines = []
     for dropped in selection.answer.dropped:
         needs = f"{would_need(selection, dropped)} ({dropped.best.resin.name})"
-        known = options.get(dropped.requirement)
+        known = relief.options.get(dropped.requirement)
         option = "" if known is None else f": {typed(*known)}"
         lines.append(f"without the requirement on {dropped.requirement} alone a design fits: {needs}{option}")
     return lines or ["no design fits with any single requirement dropped"]
 
 
-def change_lines(changes: Sequence[WorkingChange], typed: Typed) -> list[str]:
-    """Lines on the changes each of which alone lets a design meet the target, requirements unchanged; or none."""
-    lines = [f"{typed(change.field, change.value)}: {change.best}" for change in changes]
-    return ["with the same requirements, one of these alone is enough:", *lines] if lines else []
+def relief_lines(selection: SelectionRun, relief: Relief, typed: Typed) -> list[str]:
+    """`dropped_lines`, and the changes each of which alone lets a design meet the target, requirements unchanged."""
+    lines = [f"{typed(change.field, change.value)}: {change.best}" for change in relief.changes]
+    head = ["with the same requirements, one of these alone is enough:"] if lines else []
+    return [*dropped_lines(selection, relief, typed), *head, *lines]
 
 
 def remarks(selection: SelectionRun) -> list[str]:

@@ -4,8 +4,8 @@ Also a selection with its gauge: the one named, or the one that covers the range
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
 from pneutouch.catalogue import Library, ResolvedDesign
@@ -21,7 +21,7 @@ from pneutouch.spec.printer import Printer, Process
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import ANY, base_scene, named_by_target, setting_changes, settled_base
-from pneutouch.workflows.select.document import selected
+from pneutouch.workflows.select.document import NO_RELIEF, Relief, selected
 from pneutouch.workflows.select.select import STEPS, SelectionRun
 from pneutouch.workflows.select.select import select as select_by_target
 
@@ -141,11 +141,14 @@ def _judged(chosen: _Part, parts: list[_Part], slope: float, target: Target) -> 
 
 @dataclass(frozen=True)
 class ProcessSelection:
-    """Selections by process, with the printer of each; ``left_out`` has the reasons for processes not searched."""
+    """Selections by process, with the printer of each; ``left_out`` has the reasons for processes not searched.
+
+    reliefs: for a target that no process meets, the changes that make a design possible, by process."""
 
     runs: dict[str, SelectionRun]
     profiles: dict[str, str]
     left_out: dict[str, str]
+    reliefs: Mapping[str, Relief] = field(default_factory=dict)
 
     @property
     def best(self) -> list[tuple[str, SelectionRun]]:
@@ -156,7 +159,9 @@ class ProcessSelection:
     def record(self) -> ProcessesRecord:
         """The selections as ``select`` prints them."""
         shown = {
-            process: extended(ProcessRecord, selected(run), profile=self.profiles[process])
+            process: extended(
+                ProcessRecord, selected(run, self.reliefs.get(process, NO_RELIEF)), profile=self.profiles[process]
+            )
             for process, run in self.runs.items()
         }
         return ProcessesRecord(bool(self.best), shown, self.left_out)
@@ -180,9 +185,9 @@ def select_processes(
         usual = settled_base(target, setting_changes(target, library), library).print.profile
     runs, profiles, left_out = {}, {}, {}
     for number, process in enumerate(names):
-        offered = _profile(process, target, library, usual)
+        offered = profile_of(process, target, library, usual)
         if offered is None:
-            left_out[process] = _unmade(process, target.given.materials, library)
+            left_out[process] = _unmade(process, target, library)
             continue
         profiles[process], resins = offered
 
@@ -199,14 +204,14 @@ def _named(target: Target, library: Library) -> list[str]:
     names = list(dict.fromkeys(target.setting.processes or ()))
     if names == ["any"]:
         free = target.model_copy(update={"given": target.given.model_copy(update={"materials": None})})
-        return [process for process in get_args(Process) if _profile(process, free, library) is not None]
+        return [process for process in get_args(Process) if profile_of(process, free, library) is not None]
     return [str(process) for process in names]
 
 
 _Offer = tuple[str, list[str] | None]
 
 
-def _profile(process: str, target: Target, library: Library, usual: str = "") -> _Offer | None:
+def profile_of(process: str, target: Target, library: Library, usual: str = "") -> _Offer | None:
     """Printer of a process that is on the shelf and makes one of the resins (``usual`` if it does), and those of the
     named resins that it makes (None if none is named); None without such a printer."""
     resins, shelf = target.given.materials, target.have
@@ -226,7 +231,7 @@ def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bo
     here = base.printer.process
     if others:
         processes = (process for process in get_args(Process) if process != here)
-        return [process for process in processes if _profile(process, target, library) is not None]
+        return [process for process in processes if profile_of(process, target, library) is not None]
     printers = library.readable("printers", Printer)
     materials = library.all("materials", Material)
     offered = target.given.materials or [name for name in materials if target.have.holds("materials", name)]
@@ -241,16 +246,21 @@ def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bo
 
 def on_process(target: Target, process: str, library: Library) -> Target:
     """The target on a printer that makes its resins by a process; unchanged if none does."""
-    offered = _profile(process, target, library)
+    offered = profile_of(process, target, library)
     return target if offered is None else _of(target, process, *offered)
 
 
-def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
-    """Reason why no printer of a process makes the resins named; one whose file lacks [casting] is named first."""
-    printers = [one for one in library.readable("printers", Printer).values() if one.process == process]
-    for name in resins or ():
+def _unmade(process: str, target: Target, library: Library) -> str:
+    """Reason why no printer of a process makes the target's resins; one whose file lacks [casting] is named first."""
+    every, shelf = library.readable("printers", Printer), target.have
+    printers = {name: one for name, one in every.items() if one.process == process}
+    on_shelf = [one for name, one in printers.items() if shelf.holds("printers", name)]
+    if printers and not on_shelf:
+        return f"{' or '.join(printers)} is not on the shelf, which has {', '.join(shelf.printers or ())}"
+    resins = target.given.materials or shelf.materials or ()
+    for name in resins:
         material: Material = library.load("materials", name, key="given.materials")
-        casts = next((one for one in printers if casting_missing(one, material)), None)
+        casts = next((one for one in on_shelf if casting_missing(one, material)), None)
         if casts is not None:
             return str(uncast(casts, material, str(library.paths("materials")[name])))
     return f"no profile of it makes {' or '.join(resins or ['an elastomer'])}"

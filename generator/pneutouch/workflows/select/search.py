@@ -6,8 +6,8 @@ For a target that no design meets: changes of one thing outside its requirements
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,10 +21,25 @@ from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.target import Setting, Target
 from pneutouch.workflows.select.base import base_scene
-from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, write_assigned
-from pneutouch.workflows.select.document import RelaxedValue, WorkingChange, graded, relaxed, selected
+from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, other_contact, write_assigned
+from pneutouch.workflows.select.document import (
+    NO_RELIEF,
+    RelaxedValue,
+    Relief,
+    WorkingChange,
+    graded,
+    relaxed,
+    selected,
+)
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
-from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
+from pneutouch.workflows.select.processes import (
+    ProcessSelection,
+    offers,
+    on_process,
+    profile_of,
+    select,
+    select_processes,
+)
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
 
 SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
@@ -47,14 +62,13 @@ class FoundChoice:
 @dataclass(frozen=True)
 class TargetAnswer:
     """An answer: its record; the designs that meet the target, best first; why ``check`` rejects a grade that meets it;
-    without designs, single changes that make one possible, and options that relax a requirement."""
+    without designs of a single process, what makes one possible."""
 
     run: SelectionRun | GradedSelectionRun | ProcessSelection
     record: SelectedRecord
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
-    changes: tuple[WorkingChange, ...] = ()
-    options: Mapping[str, RelaxedValue] = field(default_factory=dict)
+    relief: Relief = NO_RELIEF
 
     def pick(self, rank: int) -> FoundChoice:
         """Design of a rank, or of a row over processes, counted from 1. Raises InputError if there is none."""
@@ -77,6 +91,10 @@ def search(
     """
     if target.setting.processes is not None:
         over = select_processes(target, where, library, progress=progress)
+        if not over.best:
+            over = replace(
+                over, reliefs={each: relief_of(run, target, where, library) for each, run in over.runs.items()}
+            )
         rows = tuple(FoundChoice(name, run.base, run.assignments(run.answer.designs[0])) for name, run in over.best)
         return TargetAnswer(over, over.record, rows)
     if target.given.graded:
@@ -91,9 +109,8 @@ def search(
     choices = tuple(FoundChoice(str(rank), run.base, run.assignments(choice)) for rank, choice in ranked)
     if choices:
         return TargetAnswer(run, selected(run), choices)
-    options = relaxations(run, where, library)
-    changes = tuple(working_changes(run, where, library, lambda what: progress(steps - 1, steps, what)))
-    return TargetAnswer(run, selected(run, changes, options), (), changes=changes, options=options)
+    enough = relief_of(run, target, where, library, lambda what: progress(steps - 1, steps, what))
+    return TargetAnswer(run, selected(run, enough), (), relief=enough)
 
 
 class Change(NamedTuple):
@@ -113,11 +130,23 @@ class Change(NamedTuple):
         return target.model_copy(update={table: section.model_copy(update=update)})
 
 
+def relief_of(
+    run: SelectionRun,
+    asked: Target,
+    where: str,
+    library: Library | None,
+    trying: Callable[[str], None] = lambda what: None,
+) -> Relief:
+    """What makes a design possible for the target ``asked`` that none meets; ``run`` is its search by one process."""
+    if run.gauges or (run.by_solid is not None and other_contact(run.sensor) is not None):
+        return NO_RELIEF
+    changes = tuple(working_changes(run, where, library, trying, asked))
+    return Relief(changes, relaxations(run, where, library))
+
+
 def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, RelaxedValue]:
     """Field and value that relax each requirement which alone prevents a design, by its name; only those with which the
     search does find one, as the best design of a coarse scan may lose a margin at round sizes."""
-    if run.by_solid is not None or run.gauges:
-        return {}
     library, options = CachedLibrary((library or Library.default()).folders), {}
     for dropped in run.answer.dropped:
         name, value = relaxed(run, dropped)
@@ -129,24 +158,29 @@ def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[
 
 
 def working_changes(
-    run: SelectionRun, where: str, library: Library | None, trying: Callable[[str], None] = lambda what: None
+    run: SelectionRun,
+    where: str,
+    library: Library | None,
+    trying: Callable[[str], None] = lambda what: None,
+    asked: Target | None = None,
 ) -> Iterator[WorkingChange]:
     """Changes of tube, port, gauge, given sizes, resins, printer and process, each of which alone makes a design
     possible.
 
     Each was searched, and its best design passes ``check``; of tubes and dead volumes the value nearest to the target's
-    own is given. None is tried if the solid searches (minutes for each), ``check`` rejected a design, or the gauge is
-    open.
+    own is given. None is tried if ``check`` rejected a design. ``asked`` is the target as it was given, if that is over
+    processes.
     """
-    if run.by_solid is not None or run.rejected or run.gauges or run.answer.nearest is None:
+    if run.rejected or run.answer.nearest is None:
         return
+    asked = asked or run.target
     near = [run.answer.nearest, *(each.best for each in run.answer.dropped)]
     library = CachedLibrary((library or Library.default()).folders)
-    for what, changes in _trials(run, library):
+    for what, changes in _trials(run, asked, library):
         trying(f"another {what}")
         for change in changes:
             by = near if change.field in _BEHIND_THE_CAVITY else []
-            tried = _tried(change.of(run.target, library), where, library, by)
+            tried = _tried(_on_one_process(change.of(asked, library), run, library), where, library, by)
             if tried is None:
                 continue
             best = tried.answer.designs[0].pool
@@ -177,7 +211,13 @@ def _tried(
     return tried if tried.answer.designs else None
 
 
-def _trials(run: SelectionRun, library: Library) -> Iterator[tuple[str, list[Change]]]:
+def _on_one_process(target: Target, run: SelectionRun, library: Library) -> Target:
+    """A target over processes as it is searched by that of ``run``; any other target unchanged."""
+    processes = target.setting.processes
+    return target if processes is None else on_process(target, run.base.printer.process, library)
+
+
+def _trials(run: SelectionRun, asked: Target, library: Library) -> Iterator[tuple[str, list[Change]]]:
     """Things to change, each with its changes in the order in which they are tried."""
     given = run.target.given
     yield _volumes(run)
@@ -187,10 +227,15 @@ def _trials(run: SelectionRun, library: Library) -> Iterator[tuple[str, list[Cha
         if getattr(given, key) is not None:
             what = "resin" if key == "materials" else key.removesuffix("_mm").replace("_", " ")
             yield what, [Change(f"given.{key}", None)]
-    yield "printer", [Change("setting.profile", name) for name in offers(run.base, run.target, library)]
-    # With a profile a process contradicts the target.
-    if run.target.setting.profile is None:
-        for process in offers(run.base, run.target, library, others=True):
+    # With a process a profile contradicts the target, and with a profile a process.
+    searched = asked.setting.processes
+    if searched is None:
+        yield "printer", [Change("setting.profile", name) for name in offers(run.base, asked, library)]
+    for process in offers(run.base, asked, library, others=True):
+        if asked.setting.profile is not None:
+            offered = profile_of(process, asked, library)
+            yield "process", [Change("setting.profile", offered[0])] if offered else []
+        elif process not in (searched or ()):
             yield "process", [Change("setting.processes", [process])]
 
 
