@@ -83,7 +83,7 @@ def test_document_keeps_its_keys_and_gains_one_a_state(evaluated):
     evaluation = evaluated("paper-dome", model="atlas")
     before, after = data(by_model(evaluation.prediction)), data(predicted(evaluation))
     kept = {**after, "states": [{k: v for k, v in s.items() if k != "uncertainty"} for s in after["states"]]}
-    more = {"rating", "dead_volume_note", "dead_volume_as_drawn_mL", "as_drawn"}
+    more = {"rating", "dead_volume_note", "dead_volume_as_drawn_mL", "as_drawn", "as_drawn_model"}
     assert {key: value for key, value in kept.items() if key not in more} == before
     assert after["rating"]["rated_pressure_kPa"] < after["rating"]["limit_kPa"]
     assert all(state["uncertainty"]["coverage_factor"] == 2 for state in after["states"])

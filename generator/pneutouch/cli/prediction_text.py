@@ -146,7 +146,8 @@ def _as_drawn(prediction: PredictionRecord) -> list[str]:
         ]
         for state in prediction.as_drawn
     ]
-    return [f"{head} (atlas):", table_text(["kPa", "S kPa/N", "N/mm", "range N", "range ends at"], rows), ""]
+    columns = ["kPa", "S kPa/N", "N/mm", "range N", "range ends at"]
+    return [f"{head} ({prediction.as_drawn_model}):", table_text(columns, rows), ""]
 
 
 def _range_end(state: StateRecord) -> str:

@@ -126,14 +126,15 @@ class Evaluation:
 
     @cached_property
     def as_drawn(self) -> SensorPrediction | None:
-        """Prediction by the atlas with the gas as drawn, if a dead volume of 0 is stated behind a tube; else None, as
-        for the model membrane, which loads no tables, and outside the atlas."""
+        """Prediction with the gas as drawn, if a dead volume of 0 is stated behind a tube: by the atlas, for a law
+        that this does not hold by the solid. Else None, as for the model membrane, which loads no tables."""
         if not self.assembly.dead_volume_note or self.prediction.model == "membrane":
             return None
         sensor = self.sensor.replace(dead_volume=self.assembly.drawn_volume)
+        plain = sensor.wall.law is None or sensor.protocol.other_contact is not None
         try:
             pressures = [state.driving_pressure for state in self.prediction.states]
-            return predict(self.scene.name, sensor, pressures, model="atlas")
+            return predict(self.scene.name, sensor, pressures, model="atlas" if plain else "solid")
         except InputError:
             return None
 

@@ -72,14 +72,10 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=assembly.dead_volume_note or None,
         dead_volume_as_drawn_mL=drawn_mL,
-        as_drawn=states_as_drawn(evaluation),
+        as_drawn=() if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states,
+        as_drawn_model=None if evaluation.as_drawn is None else evaluation.as_drawn.model,
         contact_anywhere=anywhere,
     )
-
-
-def states_as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
-    """The states of `Evaluation.as_drawn`, with the gas as drawn; empty if it is None."""
-    return () if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states
 
 
 def _anywhere(evaluation: Evaluation) -> ContactAnywhere:

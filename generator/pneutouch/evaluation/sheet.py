@@ -16,7 +16,6 @@ from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
 from pneutouch.evaluation.relaxation import viscous
-from pneutouch.evaluation.result import states_as_drawn
 from pneutouch.evaluation.sheet_data import AgeingData, ComparedMembrane, PressedView, SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
@@ -104,7 +103,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         speed=dynamics(evaluation.bandwidth),
         pour=None if evaluation.assembly.mould is None else silicone_batch(evaluation.assembly.mould),
         curves=evaluation.curves,
-        as_drawn=states_as_drawn(evaluation),
+        as_drawn=evaluation.as_drawn,
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

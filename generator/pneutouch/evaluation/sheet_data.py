@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from pneutouch.parts.mould.assembly import SiliconeBatch
     from pneutouch.printability import Finding
     from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
-    from pneutouch.results.prediction import StateRecord
     from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.selection.front import TradeOffFront
@@ -69,7 +68,7 @@ class SheetData:
         speed: Speed of the sensor's reading; None if that was not computed.
         pour: The silicone to weigh; None if the membrane is not cast.
         curves: The sensor by every mixing curve of its mix, the softest first.
-        as_drawn: The states with the gas as drawn, if a dead volume of 0 is stated behind a tube; else empty.
+        as_drawn: Prediction with the gas as drawn, if a dead volume of 0 is stated behind a tube; else None.
     """
 
     scene: ResolvedDesign
@@ -99,7 +98,7 @@ class SheetData:
     viscous_runs: ViscousRuns | None = None
     pour: SiliconeBatch | None = None
     curves: tuple[CurveOutcome, ...] = ()
-    as_drawn: tuple[StateRecord, ...] = ()
+    as_drawn: SensorPrediction | None = None
 
 
 class SensitivityCurve(NamedTuple):

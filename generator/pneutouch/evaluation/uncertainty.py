@@ -198,7 +198,7 @@ def uncertainties(
     ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
     states, model = prediction.states, prediction.model
-    notes_of_wall, sensor = notes_on(sensor), sensor.even
+    notes_of_wall, fitted, sensor = notes_on(sensor), sensor.wall.fitted, sensor.even
     why = why_unknown(sensor, model)
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
@@ -228,7 +228,9 @@ def uncertainties(
         uncovered = place_unknown(prediction, sensor, states)
         notes_of_wall += () if uncovered is None else (f"the place of contact is not in the budget: {uncovered}",)
     content = []
-    for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
+    # The air's effects are those of the atlas's wall: a fitted law's are computed by the solid.
+    airs: list[tuple[str, ...]] = [()] * len(states) if fitted else gas_text(estimate.batch)
+    for row, (state, notes) in enumerate(zip(states, airs, strict=True)):
         values = _values(prediction, state)
         entry = document(estimate.budget, row, values, (*notes_of_wall, *notes), calibrated=calibrated)
         elasticities = dict(entry.elasticities or {})

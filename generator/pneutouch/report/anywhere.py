@@ -23,22 +23,24 @@ _MARKED = 5
 """A marker is drawn at one in this many points of a curve."""
 
 
-def contact_line(chart: ContactChart | str | None) -> str:
+def contact_line(chart: ContactChart | str | None, rated_kPa: float) -> str:
     """Text for the first page: error of the reading under a central ball, and the uncertainty that an unknown contact
-    adds; if ``chart`` is None or a reason, "Not stated" with the reason."""
+    adds, at driving pressures within the rated one; if ``chart`` is None or a reason, "Not stated" with the reason."""
     if chart is None or isinstance(chart, str):
         return f"Not stated: {chart or ''}."
+    # Where no pressure is within the rating, the first stands for the design, as in the tiles.
+    count = max(sum(pressure_kPa <= rated_kPa for pressure_kPa in chart.driving_pressures_kPa), 1)
     central = (row for row in chart.rows if row.kind == "ball" and not row.offset)
-    balls = [row for row in central if row.errors_percent[-1][0] is not None]
-    shares = " and ".join(f"±{100 * share:.0f} %" for share in chart.standard_uncertainties)
-    pressures = " and ".join(f"{pressure_kPa:g}" for pressure_kPa in chart.driving_pressures_kPa)
+    balls = [row for row in central if row.errors_percent[count - 1][0] is not None]
+    shares = " and ".join(f"±{100 * share:.0f} %" for share in chart.standard_uncertainties[:count])
+    pressures = " and ".join(f"{pressure_kPa:g}" for pressure_kPa in chart.driving_pressures_kPa[:count])
     unknown = f"unknown place and object: {shares} (k = 1) at {pressures} kPa"
     if not balls:
         return f"{unknown[:1].upper()}{unknown[1:]}."
-    ball = balls[len(balls) // 2]
+    ball, at = balls[len(balls) // 2], f"{chart.driving_pressures_kPa[count - 1]:g} kPa"
     return (
         f"Calibrated under a central plate. A central ball of {ball.radius:.3g} mm radius reads "
-        f"{ball.errors_percent[-1][0]:+.0f} % at {chart.driving_pressures_kPa[-1]:g} kPa; {unknown}. See the annex."
+        f"{ball.errors_percent[count - 1][0]:+.0f} % at {at}; {unknown}. See the annex."
     )
 
 

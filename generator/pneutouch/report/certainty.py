@@ -1,6 +1,6 @@
 """The section "Uncertainty" of a datasheet: its tables of intervals, sources and model, and the chart of shares."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData
@@ -52,26 +52,31 @@ def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBl
         why = next((document.unknown for document in documents if document.unknown is not None), None)
         why = why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures"
         return section("Uncertainty", Text(f"No interval is given: {why}."), model)
-    last = list(covered.values())[-1]
+    label, last = list(covered.items())[-1]
+    share_of = last.known[SENSITIVITY_KEY].shares
     head = ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))]
     figures = SheetTable(_figures(covered), head, numeric=range(2, len(head)), small=True)
-    sources = [_source(source) for source in last.sources or () if source.standard_uncertainty > 0]
+    counted = [source for source in last.sources or () if source.standard_uncertainty > 0]
+    rows = [_source(source, share_of) for source in sorted(counted, key=lambda one: -share_of.get(one.name, 0.0))]
+    names = ("Source", "Standard\nuncertainty", "Of", f"Share at\n{label}", "Basis", "Where from")
+    notes = {label: [_plain(f"{note}.") for note in one.notes or ()] for label, one in covered.items()}
     return section(
         "Uncertainty",
-        Items(_summary(covered)),
+        Items(_by_state({label: [document.summary or ""] for label, document in covered.items()})),
         Columns(((figures,), (model,)), (3, 2)),
         *plots,
-        SheetTable(sources, ("Source", "Standard uncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
-        Items([_plain(f"{note}.") for note in last.notes or ()]),
+        SheetTable(rows, names, numeric=(1, 3)),
+        Items(_by_state(notes)),
     )
 
 
-def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
-    """Sentences on what to measure first, each with the driving pressures that it holds for."""
+def _by_state(texts: dict[str, list[str]]) -> list[str]:
+    """Sentences, by label of the driving pressure, each once with the pressures that it holds for."""
     labels_of: dict[str, list[str]] = {}
-    for label, document in covered.items():
-        labels_of.setdefault(document.summary or "", []).append(label)
-    return [f"At {' and '.join(labels)}: {text[0].lower() + text[1:]}" for text, labels in labels_of.items()]
+    for label, lines in texts.items():
+        for text in lines:
+            labels_of.setdefault(text, []).append(label)
+    return [f"At {' and '.join(labels)}: {text[:1].lower()}{text[1:]}" for text, labels in labels_of.items()]
 
 
 def _plain(text: str) -> str:
@@ -98,13 +103,16 @@ def _width(document: UncertaintyRecord, name: str) -> str:
     return interval(document, name) if figure.expanded_uncertainty > 0 else "as stated"
 
 
-def _source(source: SourceRecord) -> list[str]:
-    """Row on a source: name, standard uncertainty, what it acts on, known or assumed, and its origin."""
+def _source(source: SourceRecord, share_of: Mapping[str, float]) -> list[str]:
+    """Row on a source: name, standard uncertainty, what it acts on, its share of the sensitivity's variance, known or
+    assumed, and its origin."""
     size = source.standard_uncertainty
     value = f"{size:.2g} mL" if source.unit == "mL" else f"{100 * size:.2g} %"
     figures = [_FIGURES[name][0].lower() for name in source.figures]
     acts_on = _INPUTS.get(source.acts_on, ", ".join(figures))
-    return [source.name, value, acts_on, "known" if source.known else "assumed", _plain(source.origin)]
+    other = bool(figures) and SENSITIVITY_KEY not in source.figures
+    part = "–" if other else _percent(share_of.get(source.name, 0.0))
+    return [source.name, value, acts_on, part, "known" if source.known else "assumed", _plain(source.origin)]
 
 
 def model_rows(sheet: SheetData) -> list[list[str]]:
@@ -125,6 +133,10 @@ def model_rows(sheet: SheetData) -> list[list[str]]:
 def _digits(value: float) -> str:
     """A number with three significant digits; one from 100 up is rounded to a whole number."""
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:#.3g}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %" if share >= 0.005 else "< 1 %"
 
 
 _MOST = 5
@@ -163,7 +175,7 @@ def share_bars(shares: dict[str, dict[str, float]]) -> str:
             for k, (value, label) in enumerate(zip(values, shares, strict=True)):
                 height = row + (k - 0.5 * (len(shares) - 1)) * _THICK
                 ax.barh(height, 100 * value, _THICK, lw=0.6, color=(ACCENT, "white")[k], ec=INK)
-                text = f"{100 * value:.0f} %" if value >= 0.005 else "< 1 %"
+                text = _percent(value)
                 place: dict[str, Any] = {"xytext": (3, -0.3), "textcoords": "offset points", "va": "center"}
                 place |= {"color": INK, **BOLD} if row == 0 else {"color": MUTED}
                 ax.annotate(f"{text}  at {label}" if row == 0 else text, (100 * value, height), fontsize=6.5, **place)

@@ -40,7 +40,11 @@ def _air(sheet: SheetData) -> list[list[str]]:
     fast = f"sensitivity with adiabatic over that with isothermal air, over the same travel at {at}"
     return [
         ["Zero drift of the sealed gas", values(gas.by_temperature_kPa_per_K, ".2f", "kPa/K"), drift],
-        ["the same as force", values(gas.force_by_temperature, ".2f", "N/K"), "drift over the predicted sensitivity"],
+        [
+            "the same as force",
+            values(gas.force_by_temperature, ".2f", "N/K"),
+            f"drift over the predicted sensitivity, at {at}",
+        ],
         ["Fast contact", values(gas.fast_over_slow, ".2f", "times"), fast],
     ]
 
@@ -96,7 +100,7 @@ def detection(sheet: SheetData) -> list[list[str]]:
     basis = f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})"
     return [
         ["Smallest force detected", smallest, basis],
-        ["at first contact", touched, f"warming by {warming} reads as much as the row above"],
+        ["at first contact", touched, f"warming by {warming} reads as much as the row above, at {at}"],
     ]
 
 
@@ -116,6 +120,7 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
     after = _values([state.delay_ms for state in ends], ".2g", "ms")
     rise = _values([state.rise_time_ms for state in ends], ".2g", "ms")
     return [
+        ["At", _values([state.driving_pressure_kPa for state in ends], "g", "kPa"), "driving pressure"],
         ["First resonance", resonances_Hz, "line as drawn, force at first contact"],
         ["Bandwidth", bandwidths_Hz, f"gain within 3 dB; limit: {bands}{gauge}"],
         ["Gain within 5 %", _values([state.within_5_percent_Hz for state in ends], ".2g", "Hz"), f"limit: {narrow}"],

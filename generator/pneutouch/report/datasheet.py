@@ -104,7 +104,7 @@ def _front(sheet: SheetData) -> list[SheetBlock]:
     drawings = [Plot(text) for text in section_drawing(sheet.assembly, body).values()]
     ratings = section("Absolute maximum ratings", SheetTable(sheet_tables.ratings(sheet), numeric=(1,)))
     connected = section("How to connect it", SheetTable(sheet_tables.connections(sheet)))
-    contact = section("Contact that is not central", Text(contact_line(sheet.contact)))
+    contact = section("Contact that is not central", Text(contact_line(sheet.contact, sheet.rating.pressure_kPa)))
     return [
         Columns(([*said, *connected], (view,))),
         Tiles(sheet_tables.key_figures(sheet)),
@@ -119,6 +119,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
         "Performance",
         sheet_tables.performance(sheet),
         Text(prose.PERFORMANCE, "muted"),
+        Items(sheet_tables.quiet_events(sheet)),
         *sheet_tables.as_drawn(sheet),
         *conditions.off_axis(sheet.prediction.states),
         Items(errors),
@@ -157,7 +158,8 @@ def _conditions(sheet: SheetData) -> list[SheetBlock]:
 def _making(sheet: SheetData) -> list[SheetBlock]:
     """Blocks on the mould, on how the sensor is made, and on the findings of the print rules."""
     bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer", "Support")
-    findings = [[f.severity, f.rule, f.message, f.fix] for f in sheet.findings]
+    head = ("Severity", "Rule", "Body", "Finding", "Remedy")
+    findings = [[f.severity, f.rule, f.body, f.message, f.fix] for f in sheet.findings]
     return [
         *([] if sheet.assembly.mould is None else mould_section_blocks(sheet.assembly.mould)),
         *section(
@@ -165,7 +167,7 @@ def _making(sheet: SheetData) -> list[SheetBlock]:
             SheetTable(print_sheet.body_rows(sheet), bodies),
             Items(print_sheet.making(sheet.scene, sheet.pour), numbered=True),
         ),
-        *section("Findings of the print rules", SheetTable(findings, ("Severity", "Rule", "Finding", "Remedy"))),
+        *section("Findings of the print rules", SheetTable(findings, head)),
     ]
 
 

@@ -204,6 +204,10 @@ def _plan(ax: Axes, assembly: Assembly) -> None:
         _side_port(ax, assembly)
     _holes(ax, assembly, unit)
     far = max(reach, layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0))
+    for x in (-reach - unit, far + unit):
+        # The line of the section, seen in the direction of its arrows.
+        ax.plot([x - unit, x + unit], [0, 0], color=INK, lw=1.4)
+        leader(ax, (x, 0), (x, 5 * unit), "A", "center", arrow="<|-")
     _finish(ax, "View from above", (-reach - 3 * unit, far + 3 * unit), (-reach - 3 * unit, reach + 5 * unit))
 
 

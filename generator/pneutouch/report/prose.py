@@ -34,7 +34,8 @@ HANDLING = (
 
 PERFORMANCE = (
     "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see Uncertainty. "
-    "Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one."
+    "Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one. "
+    "*: above the rated driving pressure."
 )
 
 DEFINITIONS = (

@@ -90,12 +90,18 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
     ax.annotate(text, (x, 0.5 * (y0 + y1)), ha=side, va="center", fontsize=_SIZE, **place)
 
 
-def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
-    """Draw a note at ``to``, aligned by ``ha``, with an arrow to the point ``at``."""
-    arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
+def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str, arrow: str = "-|>") -> None:
+    """Draw a note at ``to``, aligned by ``ha``, with an arrow to the point ``at``; from there to it if ``<|-``."""
+    style = {
+        "arrowstyle": f"{arrow},head_width=0.12,head_length=0.3",
+        "lw": THIN,
+        "color": INK,
+        "shrinkA": 1,
+        "shrinkB": 0,
+    }
     box = {"fc": "white", "ec": "none", "pad": 0.6}
     look: dict[str, Any] = {"va": "center", "fontsize": _SIZE, "multialignment": "left", "bbox": box}
-    ax.annotate(text, at, xytext=to, arrowprops=arrow, ha=ha, **look)
+    ax.annotate(text, at, xytext=to, arrowprops=style, ha=ha, **look)
 
 
 _THICK = 0.9

@@ -1,5 +1,9 @@
 """Tables of a datasheet: figures that count, performance, ratings, conditions of use, limits and sources."""
 
+from collections.abc import Callable
+
+import numpy as np
+
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
@@ -25,23 +29,54 @@ _PERFORMANCE = (
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
-    """The six tiles with the key figures on the first page."""
-    first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
+    """The six tiles with the key figures on the first page, at the least driving pressure and the greatest rated."""
+    states, last = sheet.prediction.states, _highest_rated(sheet)
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
-    if sheet.as_drawn and (drawn_kPa_per_N := sheet.as_drawn[-1].sensitivity_kPa_per_N) is not None:
-        behind = (
-            f"{behind}, and the sensor then reads {drawn_kPa_per_N:.2f} kPa/N at {last.driving_pressure / KPA:g} kPa"
-        )
+    reach = f"{_condition(sheet, last, 'force_at_range_end_N')}{_drawn(sheet, last, _range)}"
+    if sheet.as_drawn is None:
+        reach += f"; with {dead_volume_mL:.2f} mL behind the cavity"
     return [
-        Tile("Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)),
-        Tile("Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)),
-        Tile("Force range", _range(last), "N", _condition(sheet, -1, "force_at_range_end_N")),
+        *(
+            Tile("Sensitivity", _sensitivity(states[k]), "kPa/N", _condition(sheet, k) + _drawn(sheet, k, _sensitivity))
+            for k in (0, last)
+        ),
+        Tile("Force range", _range(states[last]), "N", reach),
         Tile("Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary),
         Tile("Dead volume", f"{dead_volume_mL:.2f}", "mL", behind),
         Tile("Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"),
     ]
+
+
+def _highest_rated(sheet: SheetData) -> int:
+    """Number of the last state whose driving pressure is within the rating; of the first if none is."""
+    within = [k for k, state in enumerate(sheet.prediction.states) if not _is_above(sheet, state)]
+    return within[-1] if within else 0
+
+
+def _is_above(sheet: SheetData, state: SensorState) -> bool:
+    return sheet.rating.severity(state.driving_pressure) is not None
+
+
+def _drawn(sheet: SheetData, k: int, figure: Callable[[SensorState], str]) -> str:
+    """A figure of state ``k`` with the gas as drawn, after that of a dead volume of zero; empty without one."""
+    if sheet.as_drawn is None:
+        return ""
+    volume_mL = sheet.assembly.drawn_volume / ML
+    return f"; with the {volume_mL:.2f} mL as drawn: {figure(sheet.as_drawn.states[k])}"
+
+
+def quiet_events(sheet: SheetData) -> list[str]:
+    """Sentences on events that do not end the range, a kind each: travel and force from which they hold."""
+    seen: dict[tuple[str, str], list[str]] = {}
+    for state in sheet.prediction.states:
+        for event in state.events:
+            if not event.ends_range and event not in state.off_axis and event.indentation <= state.range_end:
+                force = float(np.interp(event.indentation, state.indentation, state.force))
+                place = f"{event.indentation:.2f} mm and {force:.1f} N at {state.driving_pressure / KPA:g} kPa"
+                seen.setdefault((event.kind, event.message), []).append(place)
+    return [f"Within the range, {kind} from {', '.join(at)}: {words}." for (kind, words), at in seen.items()]
 
 
 def warnings(sheet: SheetData) -> list[str]:
@@ -49,6 +84,8 @@ def warnings(sheet: SheetData) -> list[str]:
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
     left = [(state.driving_pressure / KPA, event) for state in sheet.prediction.states for event in state.off_axis]
+    if any(not _is_above(sheet, state) for state in sheet.prediction.states):
+        above = [f"{text[:-1]}; its figures stand in the annex alone, marked *." for text in above]
     return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:g} kPa: {e.message}." for p, e in left]
 
 
@@ -61,18 +98,14 @@ def _condition(sheet: SheetData, k: int, key: str = SENSITIVITY_KEY) -> str:
 
 def as_drawn(sheet: SheetData) -> list[SheetBlock]:
     """Figures with the gas of connector and tube as drawn, if the design states a dead volume of zero; else none."""
-    if not sheet.as_drawn:
+    if sheet.as_drawn is None:
         return []
     rows = [
-        [
-            f"{state.driving_pressure_kPa:g}",
-            *(DASH if v is None else f"{v:.2f}" for v in (state.sensitivity_kPa_per_N, state.stiffness_N_per_mm)),
-            DASH if state.force_range_N is None else f"0 to {state.force_range_N[1]:.1f}",
-            f"{next((e.kind for e in state.events if e.ends_range), 'depth')}, {state.range_end_mm:.2f} mm",
-        ]
-        for state in sheet.as_drawn
+        [f"{state.driving_pressure / KPA:g}", _sensitivity(state), _stiffness(state), _range(state), _ends(state)]
+        for state in sheet.as_drawn.states
     ]
-    title = f"With the {sheet.assembly.drawn_volume / ML:.2f} mL that connector and tube hold as drawn (atlas)"
+    volume_mL, model = sheet.assembly.drawn_volume / ML, sheet.as_drawn.model
+    title = f"With the {volume_mL:.2f} mL that connector and tube hold as drawn ({model})"
     head = ("Driving\nkPa", "Sensitivity\nkPa/N", "Stiffness\nN/mm", "Force range\nN", "Range ends at")
     return section(title, SheetTable(rows, head, numeric=range(4), small=True), level=3)
 
@@ -94,13 +127,14 @@ def connections(sheet: SheetData) -> list[list[str]]:
     """Rows (name, text) on port, tube, gauge, mount, and the driving pressures."""
     scene = sheet.scene
     pneumatics, tube = scene.design.pneumatics, scene.tube
-    pressures = ", ".join(f"{p:g}" for p in pneumatics.driving_pressures_kPa)
+    rated = [s.driving_pressure / KPA for s in sheet.prediction.states if not _is_above(sheet, s)]
+    pressures = f"{', '.join(f'{p:g}' for p in rated)} kPa, at most" if rated else "below"
     return [
         ["Port", scene.port.title],
         ["Tube", f"{pneumatics.tube_length_mm:g} mm, {tube.outer_diameter:g} x {tube.inner_diameter:g} mm"],
         ["Gauge", sheet.gauge.title if scene.gauge is not None else f"none named; assumed: {sheet.gauge.title}"],
         ["Mount", scene.mount.title],
-        ["Driving", f"{pressures} kPa, at most {sheet.rating.pressure_kPa:.1f}; set it, then close the line"],
+        ["Driving", f"{pressures} {sheet.rating.pressure_kPa:.1f}; set it, then close the line"],
     ]
 
 
@@ -135,12 +169,11 @@ def performance(sheet: SheetData) -> SheetTable:
 
 def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
     f, pressure_kPa = s.figures, s.driving_pressure / KPA
-    figures = (DASH, DASH, DASH)
-    if f is not None:
-        figures = f"{f.r_squared:.4f}", f"{100 * f.nonlinearity:.1f}", f"{f.stiffness:.2f}"
+    line = (DASH, DASH) if f is None else (f"{f.r_squared:.4f}", f"{100 * f.nonlinearity:.1f}")
     heights = f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}"
     beside = width, _published(sheet, pressure_kPa)
-    return [f"{pressure_kPa:g}", *heights, _sensitivity(s), *beside, *figures, _range(s), _ends(s)]
+    driving = f"{pressure_kPa:g}{' *' * _is_above(sheet, s)}"
+    return [driving, *heights, _sensitivity(s), *beside, *line, _stiffness(s), _range(s), _ends(s)]
 
 
 def _published(sheet: SheetData, pressure_kPa: float) -> str:
@@ -199,6 +232,10 @@ def sources(sheet: SheetData) -> list[list[str]]:
 
 def _sensitivity(state: SensorState) -> str:
     return f"{state.figures.sensitivity:.2f}" if state.figures else DASH
+
+
+def _stiffness(state: SensorState) -> str:
+    return f"{state.figures.stiffness:.2f}" if state.figures else DASH
 
 
 def _range(state: SensorState) -> str:

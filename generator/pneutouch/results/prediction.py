@@ -323,7 +323,9 @@ class PredictionRecord:
     dead_volume_as_drawn_mL: float | None = None
     """Gas volume of connector, tube and gauge as drawn, where the stated one is an idealisation."""
     as_drawn: tuple[StateRecord, ...] = ()
-    """The same states with that gas volume, by the atlas; empty where it has none."""
+    """The same states with that gas volume; empty where ``as_drawn_model`` has none."""
+    as_drawn_model: str | None = None
+    """Model that computed ``as_drawn``."""
     contact_anywhere: ContactAnywhere | None = None
     """Errors of the force read where object and place are unknown."""
     viscous: Viscous | None = None
