@@ -9,11 +9,11 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from pneutouch.bench.figures import FIGURES
+from pneutouch.bench.figures import FIGURES, run_figures
 from pneutouch.bench.record import SuspectInterval
 from pneutouch.report.blocks import FramedBlocks, Heading, Plot, SheetTable, found
 from pneutouch.report.measured import tables
-from pneutouch.report.measured.plots import loops, responses
+from pneutouch.report.measured.plots import loops, opened, responses
 from pneutouch.report.measured.sheet import described, measured_datasheet, tiles, whole_verdict
 from pneutouch.report.measured.tables import MOST, groups_of, lists, resin_section, specimen_section
 from pneutouch.report.numbers import MINUS, between, difference, number, signed
@@ -273,6 +273,19 @@ def test_a_plot_of_one_resin_among_several_is_narrow_and_named(campaign):
     width = [float(re.search(r'width="([\d.]+)pt"', plot.svg)[1]) for plot in (loop, response)]
     assert width == pytest.approx([86 / 25.4 * 72, 180 / 25.4 * 72], rel=1e-3)
     assert not any(group.alone for group in groups)
+
+
+def test_the_loop_that_is_drawn_is_as_wide_as_the_figure_says(campaign):
+    """Drawn as rise over force, a loop of 0.3 % of full scale is one line."""
+    runs = [curve for one in campaign.comparisons for curve in one.group.curves if curve.loop]
+    assert runs
+    for run in runs:
+        ((force, opening),) = opened(run)
+        width = run_figures(run)["hysteresis_width_percent"]
+        assert 2 * np.abs(opening).max() == pytest.approx(width, rel=0.02)
+        assert opening[-1] == pytest.approx(0, abs=1e-9) and force[-1] == pytest.approx(
+            max(cycle[0].max() for cycle in run.loop), rel=0.01
+        )
 
 
 def _only(group, kind):

@@ -143,22 +143,32 @@ def line_figures(got: Figures[float]) -> dict[str, float]:
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:
-    """Hysteresis of all cycles, percent, from fitted branches, as the greatest difference of raw ones would be noise.
+    """Hysteresis of all cycles, percent, from fitted branches, as the greatest difference of raw ones would be noise;
+    empty for few samples."""
+    fitted = fitted_loop(curve)
+    if fitted is None:
+        return {}
+    force, middle, half = fitted
+    share = force / force[-1]
+    width, area = hysteresis(share, middle + half, share, middle - half)
+    return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
 
-    Both branches are fitted at once: a middle line, and a gap that closes at the greatest force. Empty for few samples.
+
+def fitted_loop(curve: MeasuredCurve) -> tuple[Array, Array, Array] | None:
+    """Force (N), and rise (MPa) on the middle line of all cycles and half the gap from there to the loading, (n,) each.
+
+    Both branches are fitted at once, with a gap that closes at the greatest force; None for few samples.
     """
     sides = [(1.0, *cycle[:2]) for cycle in curve.loop] + [(-1.0, *cycle[2:]) for cycle in curve.loop]
     force, rise = np.concatenate([side[1] for side in sides]), np.concatenate([side[2] for side in sides])
     if force.size < _LEAST_SAMPLES or force.max() <= 0:
-        return {}
+        return None
     direction = np.concatenate([np.full(len(side[1]), side[0]) for side in sides])
     coefficients = np.linalg.lstsq(np.hstack(_branches(force / force.max(), direction)), rise, rcond=None)[0]
     lowest = max(min(cycle[k].min() for cycle in curve.loop) for k in (0, 2))
     grid = np.linspace(max(lowest, 0.0) / force.max(), 1.0, _GRID)
     middle, half = _branches(grid, np.ones(_GRID))
-    line, gap = middle @ coefficients[:_CURVE], half @ coefficients[_CURVE:]
-    width, area = hysteresis(grid, line + gap, grid, line - gap)
-    return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
+    return grid * force.max(), middle @ coefficients[:_CURVE], half @ coefficients[_CURVE:]
 
 
 def _branches(share: Array, direction: Array) -> tuple[Array, Array]:

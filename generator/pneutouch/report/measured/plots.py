@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.figures import FIRST
+from pneutouch.bench.figures import FIRST, fitted_loop
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.report import curves
 from pneutouch.report.blocks import Plot
@@ -39,8 +39,6 @@ SKY = "#3F8FBF"
 """A blue that differs from INK in grayscale, which ACCENT does not."""
 _TONES = (INK, SKY, MUTED)
 
-_POINTS = 120
-"""Approximate number of points drawn of a branch, loading or unloading."""
 _PER_DECADE = 8
 """Points of a relaxation per decade of time."""
 
@@ -231,45 +229,52 @@ def _presses(groups: ResinGroups) -> list[curves.Press]:
 
 
 def loops(groups: Groups) -> Plot | None:
-    """Plot of rise over force in and out, of one run at the lowest and one at the highest driving pressure; or None.
+    """Plot of how far a loop opens, of one run at the lowest and one at the highest driving pressure; or None.
 
-    More loops in a panel, or those of several specimens, would hide one another.
+    A loop is narrower than the line that would draw it: its fitted branches are drawn from their middle.
     """
     words = (
-        "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its "
-        "cycles."
+        "Pressure rise from the loop's middle, in percent of the full-scale rise: the distance of the two branches, "
+        "fitted to all cycles, is the hysteresis. The first run at the lowest and at the highest driving pressure."
     )
     runs = {
         g.label: [(p, run) for p in _ends(g.driving_pressures_kPa) if (run := _loop_of(g, p)) is not None]
         for g in groups
     }
     pressures_kPa = sorted({p for each in runs.values() for p, _ in each})
-    tones = {pressure_kPa: _TONES[k % len(_TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
-    square = PlotLine(dashes="", marker="s", size=5, filled=True)
-    legend = [replace(square, label=f"{p:g} kPa", tone=tone) for p, tone in tones.items()]
+    look = PlotLine(width=0.9, filled=True, every=16)
+    looks = {
+        p: replace(look, tone=_TONES[k % len(_TONES)], marker=MARKERS[k % len(MARKERS)])
+        for k, p in enumerate(pressures_kPa)
+    }
+    legend = [replace(one, label=f"{p:g} kPa", dashes="") for p, one in looks.items()]
     legend += [PlotLine(label="loading", width=0.9), PlotLine(label="unloading", width=0.9, dashes=LINES[1])]
 
     def draw(group: ResinGroups) -> Panel:
-        branches = [
-            _branch(curve[2 * k], curve[2 * k + 1], PlotLine(tone=tones[p], width=0.9, dashes=LINES[k]))
+        lines = [
+            replace(looks[p], x=force, y=side * opening, dashes=dashes)
             for p, run in runs[group.label]
-            for curve in run.loop
-            for k in (0, 1)
+            for force, opening in opened(run)
+            for side, dashes in ((1.0, LINES[0]), (-1.0, LINES[1]))
         ]
-        return curves.rises(branches)
+        return Panel("contact force  (N)", "from the middle  (% FS)", tuple(lines), xlim=(0, None), zero="y")
 
     return _plot([g for g in groups if runs[g.label]], "Hysteresis", words, draw, legend)
+
+
+def opened(run: MeasuredCurve) -> list[tuple[Array, Array]]:
+    """Force (N) and distance of the loading branch from the middle of its loop (% of full scale); [] without a fit."""
+    fitted = fitted_loop(run)
+    if fitted is None:
+        return []
+    force, middle, half = fitted
+    return [(force, 100.0 * half / float(np.ptp(middle)))]
 
 
 def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:
     """The first run at a driving pressure with cycles of loading and unloading; None if there is none."""
     members = (one.group for one in groups.comparisons if one.group.key.driving_pressure_kPa == pressure_kPa)
     return next((curve for group in members for curve in group.curves if curve.loop), None)
-
-
-def _branch(force: Array, rise: Array, look: PlotLine) -> curves.Press:
-    step = max(len(force) // _POINTS, 1)
-    return curves.Press(force[:0], force[::step], rise[::step] / KPA, look)
 
 
 def relaxations(groups: Groups) -> Plot | None:
