@@ -28,7 +28,15 @@ def test_the_atlas_completes_its_quick_answer_to_the_prediction_of_the_command(c
     assert whole["prediction"] == expected
     for state, one in zip(quick["prediction"]["states"], expected["states"], strict=True):
         assert state == {key: value for key, value in one.items() if key != "uncertainty"}
-    later = {"states", "viscous", "dynamics", "dead_volume_note", "dead_volume_as_drawn_mL", "as_drawn"}
+    later = {
+        "states",
+        "viscous",
+        "dynamics",
+        "dead_volume_note",
+        "dead_volume_as_drawn_mL",
+        "as_drawn",
+        "as_drawn_model",
+    }
     assert {**quick["prediction"], **dict.fromkeys(later)} == {**expected, **dict.fromkeys(later)}
     states = {state["driving_pressure_kPa"]: state["sensitivity_kPa_per_N"] for state in expected["states"]}
     curve = whole["curves"]["design"]

@@ -52,7 +52,7 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     said = json.loads(command("predict", "paper-dome", "--set", f"membrane.wall_thickness_mm={wall}", "--json").stdout)
     assert screen.locator("#status").text_content() == f"Answered by the model {said['model']}."
     shown = screen.evaluate(
-        "[...document.querySelectorAll('#figures tbody tr')].map(e => e.children[1].textContent.split(' ')[0])"
+        "[...document.querySelectorAll('#figures table:first-of-type tbody tr')].map(e => e.children[1].textContent.split(' ')[0])"
     )
     expected = [state["sensitivity_kPa_per_N"] for state in said["states"]]
     assert [float(text) for text in shown] == [float(f"{value:.4g}") for value in expected]
@@ -155,3 +155,23 @@ def test_a_chart_lists_an_interval_once_and_not_its_axis(screen):
     entries = screen.evaluate(shown)
     assert sum("interval" in entry for entry in entries) == 1
     assert not [entry for entry in entries if entry.startswith("driving")]
+
+
+@pytest.mark.slow
+def test_the_figures_with_the_gas_as_drawn_stand_below_those_of_the_command(screen, command):
+    solved(screen, "#paper-dome")
+    said = json.loads(command("predict", "paper-dome", "--json").stdout)
+    drawn = [float(f"{state['sensitivity_kPa_per_N']:.4g}") for state in said["as_drawn"]]
+    shown = "[...document.querySelectorAll('#figures table:last-of-type tbody tr')].map(e => Number(e.children[1].textContent))"
+    assert screen.evaluate(shown) == drawn
+
+
+def test_on_a_narrow_screen_no_table_is_cut_off_and_no_curve_differs_by_colour_alone(open_studio):
+    page = open_studio(width=400)
+    until(page, SOLVED)
+    cut = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.id)"
+    assert page.evaluate(cut) == []
+    for chart in ("force", "rise", "inflation"):
+        entries = f"[...document.querySelectorAll('#{chart} .u-series:not(:first-child) .u-marker')]"
+        dashes = page.evaluate(f"{entries}.map(e => e.style.background.replace(/(rgb|#)[^ ]+ ?[^ ]* ?[^ ]*\\)?/g, ''))")
+        assert len(dashes) == len(set(dashes)) > 1, dashes

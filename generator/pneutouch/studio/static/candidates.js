@@ -11,7 +11,7 @@ const TITLES = {
   dropped: "Fits without one requirement",
 };
 
-const cells = (tag, texts) => texts.map((text) => element(tag, tag === "th" ? { scope: "col" } : {}, text));
+const cells = (tag, texts, head = []) => texts.map((text, k) => element(tag, tag === "th" ? { scope: "col" } : { "data-head": head[k + 1] }, text));
 
 function table(caption, head, rows) {
   return element(
@@ -22,7 +22,7 @@ function table(caption, head, rows) {
       {},
       element("caption", { class: "muted" }, caption),
       element("thead", {}, element("tr", {}, ...cells("th", head))),
-      element("tbody", {}, ...rows.map(([first, ...rest]) => element("tr", {}, element("th", { scope: "row" }, first), ...cells("td", rest)))),
+      element("tbody", {}, ...rows.map(([first, ...rest]) => element("tr", {}, element("th", { scope: "row" }, first), ...cells("td", rest, head)))),
     ),
   );
 }

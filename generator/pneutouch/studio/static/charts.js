@@ -39,6 +39,20 @@ export const series = (label, stroke, more = {}) => ({
   ...more,
 });
 
+/** Dashes by number: curves differ without their colours too. */
+const DASHES = [[], [10, 4], [3, 3], [12, 3, 3, 3], [6, 2], [2, 6], [14, 3, 3, 3, 3, 3], [7, 7]];
+export const dashes = (number) => DASHES[number % DASHES.length];
+
+/** A piece of the line as background of its entry in the legend. */
+function piece(chart, number) {
+  const { stroke, dash } = chart.series[number];
+  const ink = stroke(chart, number);
+  if (!dash?.length) return ink;
+  let at = 0;
+  const stops = dash.map((length, k) => `${k % 2 ? "transparent" : ink} ${at}px ${(at += length)}px`);
+  return `repeating-linear-gradient(90deg, ${stops.join(", ")})`;
+}
+
 /** What the legend reads under the pointer. */
 const read = (value) => (value === null || value === undefined ? "" : short(value));
 
@@ -114,7 +128,7 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
     axes: [axis(across), axis(up, { size: 48 })],
     cursor: { drag: { x: false, y: false } },
     hooks: { draw: [markers(host)] },
-    legend: { show: legend, live: true },
+    legend: { show: legend, live: true, markers: { width: 0, fill: piece } },
     // Points between pixels: rounded to them, a slow curve would have steps.
     pxAlign: 0,
   };
@@ -162,7 +176,7 @@ export function drawSensitivity(answer, pinned) {
   const material = answer.drawing.bodies.find((body) => body.role === "membrane").material;
   // The design's own resin is drawn already.
   answer.curves.resins.filter((resin) => !own || !material.startsWith(resin.title)).forEach((resin, k) => {
-    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 7 + 1), { width: 1.3, dash: k < 7 ? undefined : [7, 3] }));
+    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 7 + 1), { width: 1.3, dash: dashes(k + 1) }));
   });
   if (pinned && pinned.curves && pinned.curves.design) {
     const { driving_pressure_kPa: pressures, sensitivity_kPa_per_N: values } = pinned.curves.design;
@@ -176,17 +190,17 @@ export function drawSensitivity(answer, pinned) {
   });
 }
 
-/** A curve of every state over the indentation; those of a pinned design dashed. */
+/** A curve of every state over the indentation; those of a pinned design thin. */
 export function drawStates(id, key, words, answer, pinned) {
   const lines = [];
   const tables = [];
-  const add = (states, dash, prefix) =>
+  const add = (states, width, prefix) =>
     states.forEach((state, k) => {
       tables.push([state.curve.indentation_mm, state.curve[key]]);
-      lines.push(series(`${prefix}${short(state.driving_pressure_kPa)} kPa`, tone(k), { dash }));
+      lines.push(series(`${prefix}${short(state.driving_pressure_kPa)} kPa`, tone(k), { dash: dashes(k), width }));
     });
-  add(answer.prediction.states, undefined, "");
-  if (pinned && pinned.prediction) add(pinned.prediction.states, [6, 4], "pinned ");
+  add(answer.prediction.states, 2, "");
+  if (pinned && pinned.prediction) add(pinned.prediction.states, 1, "pinned ");
   show(id, "indentation, mm", words, lines, uPlot.join(tables));
 }
 
@@ -204,7 +218,7 @@ export function drawInflation(answer) {
   if (limits.limit_point_kPa !== null) {
     marks.push({ at: limits.limit_point_kPa, words: `limit point ${short(limits.limit_point_kPa, 3)} kPa`, colour: "error" });
   }
-  const lines = [series("apex, outer surface", tone(0)), series("apex, inner surface", tone(1))];
+  const lines = [series("apex, outer surface", tone(0)), series("apex, inner surface", tone(1), { dash: dashes(1) })];
   const data = [pick("driving_pressure_kPa"), pick("apex_height_outer_mm"), pick("apex_height_inner_mm")];
   show("inflation", "driving pressure, kPa", "apex height, mm", lines, data, { marks });
 }

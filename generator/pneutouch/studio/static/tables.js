@@ -8,7 +8,7 @@ function table(head, rows) {
     "table",
     {},
     element("thead", {}, element("tr", {}, ...head.map((words) => cell("th", words, "col")))),
-    element("tbody", {}, ...rows.map(([first, ...rest]) => element("tr", {}, cell("th", first, "row"), ...rest.map((words) => cell("td", words))))),
+    element("tbody", {}, ...rows.map(([first, ...rest]) => element("tr", {}, cell("th", first, "row"), ...rest.map((words, k) => element("td", { "data-head": head[k + 1] }, words))))),
   );
 }
 
@@ -32,13 +32,21 @@ export function showTiles(answer, solved) {
   const size = answer.drawing ?? solved?.drawing;
   const sensitivity = state.uncertainty?.figures?.sensitivity_kPa_per_N;
   byId("tiles").replaceChildren(
-    tile(`Sensitivity at ${short(state.driving_pressure_kPa)} kPa`, short(state.sensitivity_kPa_per_N, 3), "kPa/N", interval(sensitivity)),
+    tile(`Sensitivity at ${short(state.driving_pressure_kPa)} kPa`, short(state.sensitivity_kPa_per_N, 3), "kPa/N", [interval(sensitivity), drawn(prediction)].filter(Boolean).join("; ")),
     tile("Rated pressure", rated(prediction.rating), "kPa", `limit: ${prediction.rating.limit}`),
     tile("Limit point", short(prediction.limits.limit_point_kPa, 3), "kPa", prediction.limit_point ? `apex at ${short(prediction.limit_point.apex_height_outer_mm, 3)} mm outside` : ""),
     tile("Size", size ? short(size.diameter_mm, 3) : "–", "mm across", size ? `${short(size.size_mm[2], 3)} mm high${sideways(size)}` : ""),
     tile("Membrane", membrane ? short(membrane.mass_g, 3) : "–", "g", answer.drawing?.bodies[0].material ?? ""),
   );
 }
+
+/** The last state's sensitivity with the gas as drawn, beside that of a dead volume of zero. */
+function drawn(prediction) {
+  const state = prediction.as_drawn?.at(-1);
+  return state ? `with the ${volume(prediction)} as drawn ${short(state.sensitivity_kPa_per_N, 3)}` : "";
+}
+
+const volume = (prediction) => `${short(prediction.dead_volume_as_drawn_mL, 3)} mL`;
 
 const COLUMNS = [
   ["sensitivity_kPa_per_N", "sensitivity, kPa/N"],
@@ -59,7 +67,21 @@ export function showFigures(prediction) {
     table(["driving pressure", ...COLUMNS.map(([, words]) => words), "R²"], rows),
     element("p", { class: "muted" }, `In parentheses: interval with coverage factor 2. ${prediction.error_estimate.summary?.join(" ") ?? ""}`),
     events.length ? element("p", { class: "muted" }, `Events: ${events.join("; ")}`) : "",
+    ...asDrawn(prediction),
   );
+}
+
+/** The figures with the gas as drawn, if the design states a dead volume of zero behind a tube. */
+function asDrawn(prediction) {
+  if (!prediction.as_drawn?.length) return [];
+  const columns = [...COLUMNS.slice(0, 2), COLUMNS[3]];
+  const rows = prediction.as_drawn.map((state) => [
+    `${short(state.driving_pressure_kPa)} kPa`,
+    ...columns.map(([key]) => short(state[key])),
+    short(state.force_range_N?.[1]),
+  ]);
+  const head = ["driving pressure", ...columns.map(([, words]) => words), COLUMNS[2][1]];
+  return [element("h3", {}, `With the ${volume(prediction)} that connector and tube hold as drawn (${prediction.as_drawn_model})`), table(head, rows)];
 }
 
 export function showFindings(check, shownIn3d) {
