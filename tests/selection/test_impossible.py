@@ -19,7 +19,7 @@ from pneutouch.selection.candidates import evaluated
 from pneutouch.selection.choose import missed_percent, rounded
 from pneutouch.spec.target import Given
 from pneutouch.workflows.select.base import base_scene
-from pneutouch.workflows.select.document import NO_RELIEF
+from pneutouch.workflows.select.document import Relief
 from pneutouch.workflows.select.processes import offers
 from pneutouch.workflows.select.search import relief_of
 from tests.selection.targets import FINGERTIP, answer, document, target
@@ -191,10 +191,10 @@ def test_other_printers_and_processes_are_those_that_make_the_resins(library):
     assert offers(base, named, library, others=True) == []
 
 
-def test_with_an_open_gauge_no_change_is_named():
+def test_with_an_open_gauge_no_change_is_named(library):
     """The trials would hold for one gauge only."""
     run = replace(answer({**FINGERTIP, "force_range_N": 150.0}), gauges=(GaugeTrial("a", "A", False, "why", None),))
-    assert relief_of(run, run.target, "test", None) == NO_RELIEF
+    assert relief_of(run, run.target, library) == Relief()
 
 
 def test_no_radius_that_a_design_may_not_have_is_searched():

@@ -9,7 +9,7 @@ from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.base import read_shelf
 from pneutouch.workflows.select.processes import offers, select, select_processes
-from pneutouch.workflows.select.search import working_changes
+from pneutouch.workflows.select.search import relief_of
 
 FREE = {"target": {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0}, "given": {"inner_radius_mm": 9.25}}
 
@@ -52,9 +52,8 @@ def test_a_process_whose_printer_is_not_on_the_shelf_is_left_out_for_that(librar
 def test_a_change_that_is_named_takes_a_port_of_the_shelf(library):
     impossible = {**FREE["target"], "sensitivity_kPa_per_N": 2.6}
     run = chosen(library, target=impossible, have={"ports": ["thread-M5"]})
-    ports = [
-        change.value for change in working_changes(run, "target", library) if change.field == "setting.assignments"
-    ]
+    changes = relief_of(run, run.target, library).changes
+    ports = [change.value for change in changes if change.field == "setting.assignments"]
     assert not run.answer.designs and set(ports) <= {"connector.port=thread-M5"}
 
 

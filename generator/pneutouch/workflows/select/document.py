@@ -58,8 +58,7 @@ RelaxedValue = tuple[str, float]
 
 
 class Relief(NamedTuple):
-    """For a target that no design meets: single changes that make one possible, and by requirement the value that
-    relaxes it."""
+    """For a target that no design meets: single changes that suffice, and by requirement the value that relaxes it."""
 
     changes: Sequence[WorkingChange] = ()
     options: Mapping[str, RelaxedValue] = MappingProxyType({})

@@ -22,24 +22,9 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.target import Setting, Target
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, other_contact, write_assigned
-from pneutouch.workflows.select.document import (
-    NO_RELIEF,
-    RelaxedValue,
-    Relief,
-    WorkingChange,
-    graded,
-    relaxed,
-    selected,
-)
+from pneutouch.workflows.select.document import Relief, WorkingChange, graded, relaxed, selected
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
-from pneutouch.workflows.select.processes import (
-    ProcessSelection,
-    offers,
-    on_process,
-    profile_of,
-    select,
-    select_processes,
-)
+from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
 
 SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
@@ -68,7 +53,7 @@ class TargetAnswer:
     record: SelectedRecord
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
-    relief: Relief = NO_RELIEF
+    relief: Relief = Relief()  # noqa: RUF009 (a tuple)
 
     def pick(self, rank: int) -> FoundChoice:
         """Design of a rank, or of a row over processes, counted from 1. Raises InputError if there is none."""
@@ -89,12 +74,11 @@ def search(
 
     The best design and that of rank ``written``, which is to be saved, pass the whole ``check``.
     """
+    known = CachedLibrary((library or Library.default()).folders)
     if target.setting.processes is not None:
         over = select_processes(target, where, library, progress=progress)
         if not over.best:
-            over = replace(
-                over, reliefs={each: relief_of(run, target, where, library) for each, run in over.runs.items()}
-            )
+            over = replace(over, reliefs={name: relief_of(run, target, known) for name, run in over.runs.items()})
         rows = tuple(FoundChoice(name, run.base, run.assignments(run.answer.designs[0])) for name, run in over.best)
         return TargetAnswer(over, over.record, rows)
     if target.given.graded:
@@ -109,7 +93,7 @@ def search(
     choices = tuple(FoundChoice(str(rank), run.base, run.assignments(choice)) for rank, choice in ranked)
     if choices:
         return TargetAnswer(run, selected(run), choices)
-    enough = relief_of(run, target, where, library, lambda what: progress(steps - 1, steps, what))
+    enough = relief_of(run, target, known, lambda what: progress(steps - 1, steps, what))
     return TargetAnswer(run, selected(run, enough), (), relief=enough)
 
 
@@ -131,95 +115,63 @@ class Change(NamedTuple):
 
 
 def relief_of(
-    run: SelectionRun,
-    asked: Target,
-    where: str,
-    library: Library | None,
-    trying: Callable[[str], None] = lambda what: None,
+    run: SelectionRun, asked: Target, library: Library, trying: Callable[[str], None] = lambda what: None
 ) -> Relief:
-    """What makes a design possible for the target ``asked`` that none meets; ``run`` is its search by one process."""
+    """What makes a design possible for the target ``asked`` that none meets; ``run`` is its search by one process.
+
+    Each change and value was searched, and its best design passes ``check``; of tubes and dead volumes the value
+    nearest to the target's own is given. None is tried if the solid searches another contact (minutes for each), or the
+    gauge is open.
+    """
     if run.gauges or (run.by_solid is not None and other_contact(run.sensor) is not None):
-        return NO_RELIEF
-    changes = tuple(working_changes(run, where, library, trying, asked))
-    return Relief(changes, relaxations(run, where, library))
-
-
-def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, RelaxedValue]:
-    """Field and value that relax each requirement which alone prevents a design, by its name; only those with which the
-    search does find one, as the best design of a coarse scan may lose a margin at round sizes."""
-    library, options = CachedLibrary((library or Library.default()).folders), {}
+        return Relief()
+    options, changes, near = {}, [], [each.best for each in run.answer.dropped]
     for dropped in run.answer.dropped:
+        # The best design of a coarse scan may lose a margin at round sizes.
         name, value = relaxed(run, dropped)
         if name is None or value is None:
             continue
-        if _tried(Change(name, value).of(run.target, library), where, library, [dropped.best], thorough=True):
+        if _tried(Change(name, value).of(run.target, library), library, [dropped.best], thorough=True):
             options[dropped.requirement] = name, value
-    return options
-
-
-def working_changes(
-    run: SelectionRun,
-    where: str,
-    library: Library | None,
-    trying: Callable[[str], None] = lambda what: None,
-    asked: Target | None = None,
-) -> Iterator[WorkingChange]:
-    """Changes of tube, port, gauge, given sizes, resins, printer and process, each of which alone makes a design
-    possible.
-
-    Each was searched, and its best design passes ``check``; of tubes and dead volumes the value nearest to the target's
-    own is given. None is tried if ``check`` rejected a design. ``asked`` is the target as it was given, if that is over
-    processes.
-    """
-    if run.rejected or run.answer.nearest is None:
-        return
-    asked = asked or run.target
-    near = [run.answer.nearest, *(each.best for each in run.answer.dropped)]
-    library = CachedLibrary((library or Library.default()).folders)
-    for what, changes in _trials(run, asked, library):
+    for what, trials in _trials(run, asked, library):
         trying(f"another {what}")
-        for change in changes:
-            by = near if change.field in _BEHIND_THE_CAVITY else []
-            tried = _tried(_on_one_process(change.of(asked, library), run, library), where, library, by)
+        for change in trials:
+            target = change.of(asked, library)
+            if target.setting.processes is not None:
+                target = on_process(target, run.base.printer.process, library)
+            tried = _tried(target, library, near if change.field in _BEHIND_THE_CAVITY else [])
             if tried is None:
                 continue
-            best = tried.answer.designs[0].pool
-            settled = {"given.wall_thickness_mm": best.wall, "given.inner_radius_mm": best.radius}
-            value = float(settled[change.field][0]) if change.field in settled else change.value
-            if change.field == "given.materials":
-                value = [tried.answer.designs[0].resin.name]
-            yield WorkingChange(change.field, value, tried)
+            best = tried.answer.designs[0]
+            settled = {"wall_thickness_mm": float(best.pool.wall[0]), "inner_radius_mm": float(best.pool.radius[0])}
+            found_value = {**settled, "materials": [best.resin.name]}.get(change.field.partition(".")[2], change.value)
+            changes.append(WorkingChange(change.field, found_value, tried))
             break
+    return Relief(changes, options)
 
 
 _BEHIND_THE_CAVITY = ("setting.tube_length_mm", "setting.dead_volume_mL", "setting.assignments", "setting.gauge")
 """Fields whose changes are tried only with the resins of the nearest designs, in a fraction of the time."""
 
 
-def _tried(
-    target: Target, where: str, library: Library, near: Sequence[Candidate], *, thorough: bool = False
-) -> SelectionRun | None:
+def _tried(target: Target, library: Library, near: Sequence[Candidate], thorough: bool = False) -> SelectionRun | None:
     """Selection for a changed target, only with the resins of ``near`` if there are some; None if no design meets the
     target and passes ``check``. Without ``thorough`` only the scan is searched."""
     names = sorted({choice.resin.name for choice in near if choice.resin.grade is None})
     if names:
         target = target.model_copy(update={"given": target.given.model_copy(update={"materials": names})})
     try:
-        tried = passing(found(target, where, library, thorough=thorough), 1, library)
+        tried = passing(found(target, "a change", library, thorough=thorough), 1, library)
     except PneutouchError:
         return None  # The base cannot be drawn so.
     return tried if tried.answer.designs else None
 
 
-def _on_one_process(target: Target, run: SelectionRun, library: Library) -> Target:
-    """A target over processes as it is searched by that of ``run``; any other target unchanged."""
-    processes = target.setting.processes
-    return target if processes is None else on_process(target, run.base.printer.process, library)
-
-
 def _trials(run: SelectionRun, asked: Target, library: Library) -> Iterator[tuple[str, list[Change]]]:
-    """Things to change, each with its changes in the order in which they are tried."""
-    given = run.target.given
+    """Things to change, each with its changes in the order in which they are tried; none without a nearest design."""
+    given, searched = run.target.given, asked.setting.processes
+    if run.rejected or run.answer.nearest is None:
+        return
     yield _volumes(run)
     yield "port", [Change("setting.assignments", f"connector.port={name}") for name in _ports(run, library)]
     yield "gauge", [Change("setting.gauge", name) for name in _wider(run, library)]
@@ -228,13 +180,11 @@ def _trials(run: SelectionRun, asked: Target, library: Library) -> Iterator[tupl
             what = "resin" if key == "materials" else key.removesuffix("_mm").replace("_", " ")
             yield what, [Change(f"given.{key}", None)]
     # With a process a profile contradicts the target, and with a profile a process.
-    searched = asked.setting.processes
     if searched is None:
         yield "printer", [Change("setting.profile", name) for name in offers(run.base, asked, library)]
     for process in offers(run.base, asked, library, others=True):
         if asked.setting.profile is not None:
-            offered = profile_of(process, asked, library)
-            yield "process", [Change("setting.profile", offered[0])] if offered else []
+            yield "process", [Change("setting.profile", on_process(asked, process, library).setting.profile)]
         elif process not in (searched or ()):
             yield "process", [Change("setting.processes", [process])]
 
