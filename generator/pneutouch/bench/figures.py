@@ -143,8 +143,7 @@ def line_figures(got: Figures[float]) -> dict[str, float]:
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:
-    """Hysteresis of all cycles, percent, from fitted branches, as the greatest difference of raw ones would be noise;
-    empty for few samples."""
+    """Hysteresis of all cycles, percent, by fitted branches: that of raw ones would be noise; empty for few samples."""
     fitted = fitted_loop(curve)
     if fitted is None:
         return {}

@@ -50,8 +50,7 @@ def cannot_run(
 
 
 def made_by(material: Material, library: Library, setting: str, among: Collection[str] | None = None) -> str:
-    """Remedy that names the profiles (those ``among``, if given) that make a material, with their processes; if none
-    does, what to add."""
+    """Remedy that names the profiles (``among`` those given) that make a material, with processes, or what to add."""
     profiles = [f"{name} (process {one.process})" for name, one in makers(material, library, among).items()]
     others = makers(material, library)
     if others and not profiles:

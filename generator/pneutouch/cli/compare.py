@@ -75,16 +75,13 @@ def comparison_text(comparison: ComparisonRecord) -> str:
     inputs = comparison_words.input_rows(comparison)
     if inputs:
         lines += ["", table_text(["inputs that differ", *labels], inputs)]
+    differences = ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
     for pressure_kPa in comparison_words.pressures(comparison):
         rows = [_row(row) for row in comparison.figures if row.driving_pressure_kPa == pressure_kPa]
-        head = [comparison_words.heading(pressure_kPa), *labels, *_difference_heads(labels)]
+        head = [comparison_words.heading(pressure_kPa), *labels, *differences]
         lines += ["", table_text(head, rows)]
     lines += ["", *comparison_words.summary(comparison), ""]
     return "\n".join([*lines, comparison.criterion, *comparison.notes])
-
-
-def _difference_heads(labels: list[str]) -> list[str]:
-    return ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
 
 
 def _row(row: RowRecord) -> list[str]:

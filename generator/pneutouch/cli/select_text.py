@@ -78,14 +78,9 @@ def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
     return f"{selection.confirmed[rank].sensitivity:.3f}" if rank < len(selection.confirmed) else "-"
 
 
-def _place(choice: Candidate) -> str:
-    """Uncertainty that an unknown place of contact adds, in words."""
-    return "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
-
-
 def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
     """A design in the columns of `HEAD`, without its rank and the other model's sensitivity."""
-    pool = choice.pool
+    pool, place = choice.pool, "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
     return [
         choice.resin.name,
         f"{pool.radius[0]:.2f}",
@@ -94,7 +89,7 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.figures.sensitivity:.3f}",
         f"{100 * choice.expanded:.0f} %" if np.isfinite(choice.expanded) else "-",
-        *([_place(choice)] if selection.problem.anywhere else []),
+        *([place] if selection.problem.anywhere else []),
         f"0-{pool.figures.reach:.2f}",
         choice.ends_with,
         "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
@@ -121,8 +116,7 @@ def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[s
 
 
 def processes_lines(selection: ProcessSelection, typed: Typed = in_file) -> list[str]:
-    """Profile and confirmation of each best design, and why a process has none; what makes one possible if all have
-    none."""
+    """Profile and confirmation of each best design; why a process has none, and what makes one possible if all do."""
 
     lines = []
     for process, run in selection.best:

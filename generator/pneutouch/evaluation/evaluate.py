@@ -118,8 +118,7 @@ class Evaluation:
 
     @cached_property
     def uncertainty(self) -> tuple[UncertaintyRecord, ...]:
-        """Uncertainty of the figures of each state; computed on first use, because a sweep without it takes less
-        time."""
+        """Uncertainty of the figures of each state, computed on first use: a sweep without it takes less time."""
         from pneutouch.evaluation.uncertainty import uncertainties
 
         return uncertainties(self.prediction, self.sensor, self.scene, lambda: self.resins)
@@ -235,8 +234,7 @@ def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
 def evaluate_drawn(
     drawn: DrawnScene, find_resins: Callable[[], Resins], answers: Mapping[str, Answered] = MappingProxyType({})
 ) -> Evaluation:
-    """Predict a drawn scene; ``answers`` are results of models already computed, by the model's name. Raises InputError
-    if the scene cannot work."""
+    """Predict a drawn scene; ``answers``: results already computed, by model. Raises InputError if it cannot work."""
     scene, assembly, sensor, options, aged = drawn
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
@@ -316,8 +314,7 @@ def _material_error(scene: ResolvedDesign, error: InputError) -> InputError:
 
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
-    """The sensor after a year, and the assumption on it in words. Raises InputError if the resin's hardness after a
-    year is not known."""
+    """The sensor after a year, and the assumption on it. Raises InputError if its hardness is not known then."""
     material = scene.membrane_material
     remaining = 1.0 if scene.calibration is None else scene.calibration.remaining_year
     try:

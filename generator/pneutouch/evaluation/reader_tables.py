@@ -212,6 +212,7 @@ def _zero(evaluation: Evaluation, grid: ReaderGrid) -> ZeroDrift:
         drift_rate_kPa_per_s=_one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
         drift_most_kPa=_one(per_kelvin_kPa * CHANGE_K),
         noise_least_kPa=_one(_noise_kPa(evaluation, grid)),
+        # Beyond this scatter of readings without contact something moves, and they are no tare.
         noise_most_kPa=_one(max(NOISES * _noise_kPa(evaluation, grid), UNSTEADY * float(grid.rise.max()) / KPA)),
         filter_s=FILTER_S,
     )

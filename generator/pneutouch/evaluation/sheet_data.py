@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 
 class AgeingData(NamedTuple):
-    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and relative change of
-    sensitivity."""
+    """Modulus after a year over the fresh one; pairs of driving pressure (MPa) and relative change of sensitivity."""
 
     modulus_ratio: float
     sensitivity_change: tuple[tuple[float, float], ...]

@@ -49,8 +49,7 @@ _RING_HINTS = {
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:
-    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane, connector
-    and a ring share."""
+    """The bodies of a sensor as they stand in their machines, and the faces that membrane, connector and ring share."""
     scene, layout = assembly.scene, assembly.layout
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):

@@ -86,8 +86,7 @@ class SensorBudget:
 def unknown(sensor: Sensor, model: str) -> str | None:
     """Reason why the uncertainty of a model's prediction is unknown, or None if it is known.
 
-    The atlas must cover the sensor under a plate without friction; the effect of another contact is computed by the
-    solid."""
+    The atlas must cover the sensor under a plate without friction; the solid computes the effect of other contact."""
     if model == "membrane":
         return _TREND
     from pneutouch.mechanics.atlas.coverage import outside_atlas, under_plate

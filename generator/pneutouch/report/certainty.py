@@ -104,8 +104,7 @@ def _width(document: UncertaintyRecord, name: str) -> str:
 
 
 def _source(source: SourceRecord, share_of: Mapping[str, float]) -> list[str]:
-    """Row on a source: name, standard uncertainty, what it acts on, its share of the sensitivity's variance, known or
-    assumed, and its origin."""
+    """Row on a source: name, standard uncertainty, what it acts on, its share, known or assumed, and its origin."""
     size = source.standard_uncertainty
     value = f"{size:.2g} mL" if source.unit == "mL" else f"{100 * size:.2g} %"
     figures = [_FIGURES[name][0].lower() for name in source.figures]

@@ -17,7 +17,7 @@ DASH = "–"
 
 def environment(sheet: SheetData) -> list[list[str]]:
     """Rows on the environment: quantity, value and basis."""
-    rows = _air(sheet) if sheet.gas is not None else _drift_alone(sheet)
+    rows = _air(sheet)
     material = sheet.scene.membrane_material
     if material.shore_a and material.shore_a_one_year:
         text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
@@ -26,38 +26,31 @@ def environment(sheet: SheetData) -> list[list[str]]:
 
 
 def _air(sheet: SheetData) -> list[list[str]]:
-    """Rows on zero drift and fast contact at the lowest and the highest driving pressure."""
+    """Rows on zero drift and fast contact at the lowest and the highest driving pressure.
+
+    Outside the atlas the drift is that at the lowest one, and fast contact is unknown."""
     gas, states = sheet.gas, sheet.prediction.states
-    assert gas is not None
-    ends = [0, len(states) - 1] if len(states) > 1 else [0]
+    ends = [0, len(states) - 1] if len(states) > 1 and gas is not None else [0]
     at = " and ".join(f"{states[k].driving_pressure / KPA:g}" for k in ends) + " kPa"
 
     def values(numbers: Array, form: str, unit: str) -> str:
         return _values([float(numbers[k]) for k in ends], form, unit)
 
-    rigid = values(1 / gas.wall_give, ".1f", "times")
-    drift = f"ideal gas in the yielding dome at {at}, 20 °C; a rigid cavity would show {rigid} as much"
-    fast = f"sensitivity with adiabatic over that with isothermal air, over the same travel at {at}"
+    drift, over = f"ideal gas in the yielding dome at {at}, 20 °C", f"drift over the predicted sensitivity, at {at}"
+    if gas is None:
+        figures, drifts = states[0].figures, np.array([sheet.zero_drift_kPa_per_K])
+        forces = np.array([np.nan]) if figures is None else drifts / figures.sensitivity
+        fast = ["not known", "computed for sensors inside the atlas alone"]
+    else:
+        drifts, forces = gas.by_temperature_kPa_per_K, gas.force_by_temperature
+        drift += f"; a rigid cavity would show {values(1 / gas.wall_give, '.1f', 'times')} as much"
+        said = f"sensitivity with adiabatic over that with isothermal air, over the same travel at {at}"
+        fast = [values(gas.fast_over_slow, ".2f", "times"), said]
     return [
-        ["Zero drift of the sealed gas", values(gas.by_temperature_kPa_per_K, ".2f", "kPa/K"), drift],
-        [
-            "the same as force",
-            values(gas.force_by_temperature, ".2f", "N/K"),
-            f"drift over the predicted sensitivity, at {at}",
-        ],
-        ["Fast contact", values(gas.fast_over_slow, ".2f", "times"), fast],
+        ["Zero drift of the sealed gas", values(drifts, ".2f", "kPa/K"), drift],
+        ["the same as force", values(forces, ".2f", "N/K"), over],
+        ["Fast contact", *fast],
     ]
-
-
-def _drift_alone(sheet: SheetData) -> list[list[str]]:
-    """Rows for a sensor outside the atlas: zero drift at the lowest driving pressure; fast contact is unknown."""
-    state, drift_kPa_per_K = sheet.prediction.states[0], sheet.zero_drift_kPa_per_K
-    at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
-    rows = [["Zero drift of the sealed gas", f"{drift_kPa_per_K:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
-    if state.figures is not None:
-        force = f"{drift_kPa_per_K / state.figures.sensitivity:.2f} N/K"
-        rows.append(["the same as force", force, "drift over the predicted sensitivity"])
-    return [*rows, ["Fast contact", "not known", "computed for sensors inside the atlas alone"]]
 
 
 def gauge_range(sheet: SheetData) -> list[str]:

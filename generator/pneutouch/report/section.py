@@ -52,15 +52,14 @@ def circle(ax: Axes, x: float, y: float, radius: float, **look: object) -> None:
     ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **style)
 
 
+def _arrow_look(arrow: str, gap: int) -> dict[str, object]:
+    """Look of an arrow of a style that ends ``gap`` points before its ends."""
+    style = f"{arrow},head_width=0.12,head_length=0.3"
+    return {"arrowstyle": style, "lw": THIN, "color": INK, "shrinkA": gap, "shrinkB": gap}
+
+
 def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
-    style = {
-        "arrowstyle": "<|-|>,head_width=0.12,head_length=0.3",
-        "lw": THIN,
-        "color": INK,
-        "shrinkA": 0,
-        "shrinkB": 0,
-    }
-    ax.annotate("", end, start, arrowprops=style)
+    ax.annotate("", end, start, arrowprops=_arrow_look("<|-|>", 0))
 
 
 def horizontal(ax: Axes, y: float, x0: float, x1: float, feature: float, text: str) -> None:
@@ -92,16 +91,9 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
 
 def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str, arrow: str = "-|>") -> None:
     """Draw a note at ``to``, aligned by ``ha``, with an arrow to the point ``at``; from there to it if ``<|-``."""
-    style = {
-        "arrowstyle": f"{arrow},head_width=0.12,head_length=0.3",
-        "lw": THIN,
-        "color": INK,
-        "shrinkA": 1,
-        "shrinkB": 0,
-    }
     box = {"fc": "white", "ec": "none", "pad": 0.6}
     look: dict[str, Any] = {"va": "center", "fontsize": _SIZE, "multialignment": "left", "bbox": box}
-    ax.annotate(text, at, xytext=to, arrowprops=style, ha=ha, **look)
+    ax.annotate(text, at, xytext=to, arrowprops=_arrow_look(arrow, 1), ha=ha, **look)
 
 
 _THICK = 0.9
@@ -182,8 +174,7 @@ def section_picture(assembly: Assembly) -> str:
 
 
 def draw_bores(ax: Axes, solid: Solid, but: float | None = None, hidden: bool = False) -> None:
-    """Draw the bores of a solid from above, dashed if ``hidden`` or closed above; those at the distance ``but`` (mm)
-    from the axis are left out."""
+    """Draw a solid's bores from above, dashed if ``hidden`` or closed above, without those ``but`` mm from the axis."""
     for bore in solid.bores:
         if but is not None and math.isclose(math.hypot(bore.x, bore.y), but):
             continue

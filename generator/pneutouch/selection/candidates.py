@@ -33,8 +33,7 @@ def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -
 
 
 REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint", "rated pressure")
-"""Requirements of a user, who may drop any; the rated pressure stands for the driving pressure that must not be above
-it."""
+"""Requirements of a user, who may drop any; the rated pressure bounds the driving pressure."""
 
 
 class CandidatePool(NamedTuple):
@@ -220,7 +219,7 @@ _STARTS, _HALVINGS, _FIRST_STEP = 6, 12, 0.15
 logarithms of radius and wall, and in rated pressures."""
 
 
-_RADII_MM = declaration(Membrane, "inner_radius_mm").low, declaration(Membrane, "inner_radius_mm").high
+_RADIUS = declaration(Membrane, "inner_radius_mm")
 _ENOUGH = 0.02
 """Margin kept for the rounding to a hundredth of a millimetre, if there is as much."""
 
@@ -247,7 +246,7 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
             wall = np.maximum(wall, problem.least_wall)
         if problem.inner_radius is None:
             largest = np.inf if problem.max_diameter is None else np.maximum(0.5 * problem.max_diameter - wall, wall)
-            radius = np.minimum(np.clip(radius, *_RADII_MM), largest)
+            radius = np.minimum(np.clip(radius, _RADIUS.low, _RADIUS.high), largest)
         resin = np.broadcast_to(here.resin[:, None], radius.shape)
         around = evaluated(problem, *(part.ravel() for part in (resin, radius, wall, pressure)))
         worst = _worst(problem, around).reshape(radius.shape)
@@ -263,7 +262,7 @@ def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePoo
     """Candidates, and with each the nine sizes around it in hundredths of a millimetre."""
     by = 0.01 * np.arange(-1.0, 2.0)
     radius, wall = (
-        np.clip(np.round(pool.radius, 2)[:, None, None] + by, *_RADII_MM),
+        np.clip(np.round(pool.radius, 2)[:, None, None] + by, _RADIUS.low, _RADIUS.high),
         np.round(pool.wall, 2)[:, None, None] + by[:, None],
     )
     if problem.inner_radius is not None:

@@ -265,10 +265,7 @@ def loops(groups: Groups) -> Plot | None:
 def opened(run: MeasuredCurve) -> list[tuple[Array, Array]]:
     """Force (N) and distance of the loading branch from the middle of its loop (% of full scale); [] without a fit."""
     fitted = fitted_loop(run)
-    if fitted is None:
-        return []
-    force, middle, half = fitted
-    return [(force, 100.0 * half / float(np.ptp(middle)))]
+    return [] if fitted is None else [(fitted[0], 100.0 * fitted[2] / float(np.ptp(fitted[1])))]
 
 
 def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:

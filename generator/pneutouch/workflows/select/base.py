@@ -214,8 +214,7 @@ def with_connector(scene: ResolvedDesign) -> str:
 
 
 def _source(target: Target, library: Library) -> DesignSource:
-    """The base without calibration and accepted warnings, which hold only for its own membrane; the default without a
-    base."""
+    """The base, else the default; without calibration and accepted warnings, which hold for its own membrane alone."""
     if target.setting.base is None:
         return DEFAULT
     try:
@@ -234,8 +233,7 @@ def settled_base(target: Target, changes: Changes, library: Library) -> DesignFi
 
 
 def _on_finger(finger_mm: float, target: Target, changes: Changes, library: Library) -> dict[str, str | float]:
-    """Changes for a finger: its diameter, and the base's mount if that is a sleeve, else the one made for the nearest
-    finger."""
+    """Changes for a finger: its diameter, and the base's mount if a sleeve, else the one for the nearest finger."""
     sleeves = {
         name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
     }
@@ -251,8 +249,7 @@ def _on_finger(finger_mm: float, target: Target, changes: Changes, library: Libr
 
 
 def _some_resin(target: Target, where: str, changes: Changes, library: Library) -> str:
-    """A resin to draw the base with: the first of those allowed that its printer runs. Raises InputError if it runs
-    none."""
+    """A resin to draw the base with: the first allowed one that its printer runs. Raises InputError if none is."""
     profile = settled_base(target, changes, library).print.profile
     key = "setting.profile" if target.setting.profile is not None else "print.profile"
     printer: Printer = library.load("printers", profile, file=where, key=key)

@@ -83,7 +83,7 @@ def selected(selection: SelectionRun, relief: Relief = NO_RELIEF) -> SelectionRe
                 RankedDesign,
                 _choice(selection, choice, solid),
                 rank=rank,
-                runner_up=any(choice.resin.name == other.resin.name for other in answer.designs[: rank - 1]),
+                runner_up=any(choice.resin.name == before.resin.name for before in answer.designs[: rank - 1]),
                 passes_check=True if rank in selection.judged else None,
             )
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
@@ -244,8 +244,7 @@ def in_file(field: str, value: Any) -> str:
 
 
 def dropped_lines(selection: SelectionRun, relief: Relief = NO_RELIEF, typed: Typed = in_file) -> list[str]:
-    """Lines on each single requirement without which a design fits, with the value that can be reached; or one line
-    that there is none."""
+    """Lines on each single requirement without which a design fits, with the value reached; or one line on none."""
     lines = []
     for dropped in selection.answer.dropped:
         needs = f"{would_need(selection, dropped)} ({dropped.best.resin.name})"

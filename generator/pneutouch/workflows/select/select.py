@@ -99,7 +99,7 @@ class SelectionRun:
         radius, pressure_kPa = float(pool.radius[0]), float(pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure_kPa, 6)})
         values = [
-            f"membrane.material={_written(choice.resin)}",
+            f"membrane.material={choice.resin.name if choice.resin.grade is None else grade_text(choice.resin.grade)}",
             f"membrane.inner_radius_mm={radius:.6g}",
             f"membrane.wall_thickness_mm={float(pool.wall[0]):.6g}",
             f"pneumatics.driving_pressures_kPa={pressures}",
@@ -227,11 +227,6 @@ def passing(run: SelectionRun, written: int | None, library: Library) -> Selecti
             judged[rank] = evaluation
     answer = replace(run.answer, designs=[*passed, *waiting])
     return replace(run, answer=answer, rejected=tuple(rejected), judged=judged)
-
-
-def _written(resin: CandidateResin) -> str:
-    """Text for a resin in a design: its name, or the table of the mix that it is."""
-    return resin.name if resin.grade is None else grade_text(resin.grade)
 
 
 def grade_text(grade: Grade) -> str:
