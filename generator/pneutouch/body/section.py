@@ -214,7 +214,7 @@ def section_outline(solid: Solid, tolerance: float) -> list[Array]:
     of the time of meshing and cutting. Other solids are meshed and cut.
     """
     if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
-        return _cut(solid, tolerance)
+        return mesh_outline(solid.mesh(tolerance))
     loops, holes = _turned(solid.base, tolerance), [_opening(bore) for bore in solid.bores if abs(bore.y) < bore.radius]
     return _without(loops, holes) if holes else loops
 
@@ -248,7 +248,3 @@ def mesh_outline(body: Body, height: float = 0.0) -> list[Array]:
     upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     whole = manifold_of(upright, body.triangles)
     return [np.asarray(loop) for loop in whole.slice(_ASIDE - height).to_polygons()]
-
-
-def _cut(solid: Solid, tolerance: float) -> list[Array]:
-    return mesh_outline(solid.mesh(tolerance))

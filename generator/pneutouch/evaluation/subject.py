@@ -170,18 +170,16 @@ def _ending(key: str, left: list[Finding], thin: list[Finding], scene: ResolvedD
             view = PrintView(PrintSubject(items))
             found = {rule: CHECKS[rule](view) for rule in {one.rule for one in open_ones}}
             for one in open_ones:
-                rest = [each for each in thin if each is not one and each.rule == one.rule]
-                if all(any(_same_size(new, old) for old in rest) for new in found[one.rule]):
+                rest = [
+                    each.excess.measured for each in thin if each is not one and each.rule == one.rule and each.excess
+                ]
+                sizes = [new.excess.measured for new in found[one.rule] if new.excess]
+                if all(any(abs(size - other) < ALIKE for other in rest) for size in sizes):
                     ending[one].append(name)
     by_hand = {rule: f"{fix}, or " for rule, fix in _HINTS["connector"].items()}
     return {
         one: f"{by_hand.get(one.rule, '')}take {key} = {' or '.join(names)}" for one, names in ending.items() if names
     }
-
-
-def _same_size(one: Finding, other: Finding) -> bool:
-    assert one.excess is not None and other.excess is not None
-    return abs(one.excess.measured - other.excess.measured) < ALIKE
 
 
 def _others(scene: ResolvedDesign, key: str) -> Iterator[tuple[str, ResolvedDesign]]:

@@ -6,7 +6,7 @@ import base64
 import datetime
 import json
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -127,16 +127,10 @@ def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, 
 def filled(template: str, **values: Any) -> str:
     """A Markdown template filled with ``values``; filters format numbers, times and lists, and escape Markdown."""
     environment = _environment(autoescape=False)
-    environment.filters |= {"f": format, "md": markdown_escaped, "listed": _listed, "time": _time, "value": _value}
+    environment.filters |= {"f": format, "md": markdown_escaped, "time": _time}
+    environment.filters["listed"] = lambda values: ", ".join(f"{value:g}" for value in values)
+    environment.filters["value"] = lambda value: "–" if value is None else f"{value:.2f}"
     return environment.get_template(template).render(**values).rstrip() + "\n"
-
-
-def _value(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"
-
-
-def _listed(values: Iterable[float]) -> str:
-    return ", ".join(f"{value:g}" for value in values)
 
 
 def _time(seconds: float) -> str:

@@ -156,16 +156,14 @@ def _field(
     )
 
 
-_LABELS = {"max_diameter_mm": "Max dome diameter", "max_footprint_mm": "Max whole diameter"}
-"""Labels of keys that leave open which diameter they bound."""
+_LABELS = {"max_diameter_mm": "max dome diameter", "max_footprint_mm": "max whole diameter"}
+"""Words for keys that leave open which diameter they bound."""
 
 
 def _label(declared: Declaration) -> str:
     """Label of a field: its key in words, without the unit, which is shown next to it."""
-    if declared.key in _LABELS:
-        return _LABELS[declared.key]
     unit = declared.unit.replace("/", "_per_").replace("%", "percent")
-    words = declared.key.removesuffix(f"_{unit}").replace("_", " ")
+    words = _LABELS.get(declared.key) or declared.key.removesuffix(f"_{unit}").replace("_", " ")
     return words[:1].upper() + words[1:]
 
 

@@ -266,6 +266,7 @@ def _figure(budget: Budget, figure: int, row: int, given: float | None, calibrat
     value = float(budget.values[figure, row]) if given is None else given
     width = float(budget.expanded[figure, row])
     freedom = float(budget.freedom[figure, row])
+    fresh = float(np.exp(_fresh_width(budget, figure, row)))
     return FigureRecord(
         value=value,
         expanded_uncertainty=value * float(np.sinh(width)),
@@ -275,12 +276,8 @@ def _figure(budget: Budget, figure: int, row: int, given: float | None, calibrat
         degrees_of_freedom=freedom if np.isfinite(freedom) else None,
         nonlinear=bool(budget.nonlinear[figure, row]),
         shares=shares(budget, FIGURES[figure], row),
-        at_calibration=_interval(value, _fresh_width(budget, figure, row)) if calibrated else None,
+        at_calibration=IntervalRecord(value / fresh, value * fresh) if calibrated else None,
     )
-
-
-def _interval(value: float, width: float) -> IntervalRecord:
-    return IntervalRecord(value * float(np.exp(-width)), value * float(np.exp(width)))
 
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:

@@ -33,7 +33,6 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import assignments, value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import (
-    ResinPair,
     base_scene,
     mix_resins,
     prints,
@@ -181,7 +180,8 @@ def found(
     problem = problem_of(target, scene, sensor, resins)
     progress("search")
     run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, _NOTHING, left_out)
-    return _answered(run, None if pair is None else _refined(pair), library, thorough=thorough)
+    refine = None if pair is None else lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
+    return _answered(run, refine, library, thorough=thorough)
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
@@ -232,10 +232,6 @@ def passing(run: SelectionRun, written: int | None, library: Library) -> Selecti
 def grade_text(grade: Grade) -> str:
     """Text for a grade in a design file."""
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
-
-
-def _refined(pair: ResinPair) -> Refine:
-    return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
 
 
 def _resins(
