@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.body import Bore
-from pneutouch.body.section import _cut, mesh_outline, section_outline
+from pneutouch.body.section import mesh_outline, section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
@@ -42,7 +42,7 @@ def difference(one, other):
 @pytest.mark.parametrize(("name", "changes"), CASES)
 def test_the_section_is_that_of_the_mesh(name, changes, library):
     for solid in solids(name, changes, library):
-        fast, cut = section_outline(solid, TOLERANCE), _cut(solid, 0.2 * TOLERANCE)
+        fast, cut = section_outline(solid, TOLERANCE), mesh_outline(solid.mesh(0.2 * TOLERANCE))
         assert len(fast) == len(cut)
         area, around = difference(fast, cut)
         assert area < 0.5 * TOLERANCE * around
@@ -55,7 +55,7 @@ def test_a_bore_that_the_plane_cuts_is_as_wide_as_its_chord(library):
     bore = Bore(12.0, 0.6, 1.0, low, high)
     drilled = replace(plain, bores=(bore,))
     removed = difference(section_outline(plain, TOLERANCE), section_outline(drilled, TOLERANCE))[0]
-    by_mesh = difference(_cut(plain, TOLERANCE), _cut(drilled, TOLERANCE))[0]
+    by_mesh = difference(mesh_outline(plain.mesh(TOLERANCE)), mesh_outline(drilled.mesh(TOLERANCE)))[0]
     assert removed == pytest.approx(by_mesh, rel=0.02)
     assert len(section_outline(drilled, TOLERANCE)) == len(section_outline(plain, TOLERANCE)) + 1
     # A bore beside the plane leaves the section as it was.

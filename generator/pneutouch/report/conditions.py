@@ -38,16 +38,16 @@ def _air(sheet: SheetData) -> list[list[str]]:
 
     drift, over = f"ideal gas in the yielding dome at {at}, 20 °C", f"drift over the predicted sensitivity, at {at}"
     if gas is None:
-        figures, drifts = states[0].figures, np.array([sheet.zero_drift_kPa_per_K])
-        forces = np.array([np.nan]) if figures is None else drifts / figures.sensitivity
+        figures, drifts_kPa_per_K = states[0].figures, np.array([sheet.zero_drift_kPa_per_K])
+        forces = np.array([np.nan]) if figures is None else drifts_kPa_per_K / figures.sensitivity
         fast = ["not known", "computed for sensors inside the atlas alone"]
     else:
-        drifts, forces = gas.by_temperature_kPa_per_K, gas.force_by_temperature
+        drifts_kPa_per_K, forces = gas.by_temperature_kPa_per_K, gas.force_by_temperature
         drift += f"; a rigid cavity would show {values(1 / gas.wall_give, '.1f', 'times')} as much"
         said = f"sensitivity with adiabatic over that with isothermal air, over the same travel at {at}"
         fast = [values(gas.fast_over_slow, ".2f", "times"), said]
     return [
-        ["Zero drift of the sealed gas", values(drifts, ".2f", "kPa/K"), drift],
+        ["Zero drift of the sealed gas", values(drifts_kPa_per_K, ".2f", "kPa/K"), drift],
         ["the same as force", values(forces, ".2f", "N/K"), over],
         ["Fast contact", *fast],
     ]

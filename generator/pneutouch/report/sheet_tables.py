@@ -127,8 +127,8 @@ def connections(sheet: SheetData) -> list[list[str]]:
     """Rows (name, text) on port, tube, gauge, mount, and the driving pressures."""
     scene = sheet.scene
     pneumatics, tube = scene.design.pneumatics, scene.tube
-    rated = [s.driving_pressure / KPA for s in sheet.prediction.states if not _is_above(sheet, s)]
-    pressures = f"{', '.join(f'{p:g}' for p in rated)} kPa, at most" if rated else "below"
+    rated_kPa = [s.driving_pressure / KPA for s in sheet.prediction.states if not _is_above(sheet, s)]
+    pressures = f"{', '.join(f'{p:g}' for p in rated_kPa)} kPa, at most" if rated_kPa else "below"
     return [
         ["Port", scene.port.title],
         ["Tube", f"{pneumatics.tube_length_mm:g} mm, {tube.outer_diameter:g} x {tube.inner_diameter:g} mm"],

@@ -117,7 +117,7 @@ class Change(NamedTuple):
 def relief_of(
     run: SelectionRun, asked: Target, library: Library, trying: Callable[[str], None] = lambda what: None
 ) -> Relief:
-    """What makes a design possible for the target ``asked`` that none meets; ``run`` is its search by one process.
+    """Changes that make a design possible for the target ``asked``; ``run`` is its search, by one process, without one.
 
     Each change and value was searched, and its best design passes ``check``; of tubes and dead volumes the value
     nearest to the target's own is given. None is tried if the solid searches another contact (minutes for each), or the
