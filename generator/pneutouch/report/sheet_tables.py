@@ -51,8 +51,7 @@ def key_figures(sheet: SheetData) -> list[Tile]:
 
 def _highest_rated(sheet: SheetData) -> int:
     """Number of the last state whose driving pressure is within the rating; of the first if none is."""
-    within = [k for k, state in enumerate(sheet.prediction.states) if not _is_above(sheet, state)]
-    return within[-1] if within else 0
+    return max((k for k, state in enumerate(sheet.prediction.states) if not _is_above(sheet, state)), default=0)
 
 
 def _is_above(sheet: SheetData, state: SensorState) -> bool:

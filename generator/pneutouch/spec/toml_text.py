@@ -45,7 +45,8 @@ def key_text(key: str) -> str:
 
 def _blocks(content: Mapping[str, Any], path: tuple[str, ...], head: str = "") -> list[str]:
     tables = {key: value for key, value in content.items() if isinstance(value, Mapping)}
-    arrays = {key: value for key, value in content.items() if _is_tables(value)}
+    lists = {key: value for key, value in content.items() if isinstance(value, list) and value}
+    arrays = {key: value for key, value in lists.items() if all(isinstance(item, Mapping) for item in value)}
     lines = [
         f"{key_text(key)} = {value_text(value)}"
         for key, value in content.items()
@@ -58,10 +59,6 @@ def _blocks(content: Mapping[str, Any], path: tuple[str, ...], head: str = "") -
         for row in rows:
             blocks += _blocks(row, (*path, key), f"[[{_dotted((*path, key))}]]")
     return blocks
-
-
-def _is_tables(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(item, Mapping) for item in value)
 
 
 def _dotted(path: tuple[str, ...]) -> str:

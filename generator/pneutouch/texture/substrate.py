@@ -180,7 +180,8 @@ class Substrate:
     def field(self, row: BarRow) -> float:
         """Field at a row over that of the bare layer: the product of the shares of all rows there, itself included."""
         pairs = zip(self.bars, self.shares, strict=True)
-        return float(np.prod([share for other, share in pairs if _meet(row, other)]))
+        low, high = row.edges.min(), row.edges.max()
+        return float(np.prod([share for other, share in pairs if low < other.edges.max() and other.edges.min() < high]))
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
         """The function `amplitude`, mm/N, for a row under this patch, with the other rows there too."""
@@ -204,8 +205,3 @@ class Substrate:
         filled = [float(np.diff(row.edges, axis=1).sum()) / row.duty / self.length for row in self.bars]
         pairs = zip(self.shares, filled, strict=True)
         return self.bare * float(np.prod([share ** min(part, 1.0) for share, part in pairs]))
-
-
-def _meet(one: BarRow, other: BarRow) -> bool:
-    """True if two rows share a part of the path, or are the same row."""
-    return bool(one.edges.min() < other.edges.max() and other.edges.min() < one.edges.max())

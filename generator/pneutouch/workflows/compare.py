@@ -337,8 +337,14 @@ def write(result: CompareResult, out: Path) -> Path:
     folder = out / result.name
     check_writable(folder)
     document = plain(result.record)
-    parts = {sensor.label: sensor.assembly() for sensor in result.sensors if sensor.assembly is not None}
-    files = {"comparison.json": json_bytes(versioned("comparison", document)), **comparison_sheet(result.record, parts)}
+    files = {
+        "comparison.json": json_bytes(versioned("comparison", document)),
+        **comparison_sheet(result.record, _parts(result)),
+    }
     hashed = {"comparison": short_digest(document)}
     write_folder(folder, with_manifest(files, result.name, hashed))
     return folder
+
+
+def _parts(result: CompareResult) -> dict[str, Assembly]:
+    return {sensor.label: sensor.assembly() for sensor in result.sensors if sensor.assembly is not None}

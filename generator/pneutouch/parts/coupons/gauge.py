@@ -69,7 +69,9 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
     adds = [_wall(x, size, walls.middle) for x, size in walls.places()]
     adds += [_pin(x, size, pins.middle) for x, size in pins.places()]
     bores = tuple(Bore(x, holes.middle, 0.5 * size, 0.0, PLATE) for x, size in holes.places())
-    cuts = tuple(_slot(x, size, slots.middle) for x, size in slots.places())
+    cuts = tuple(
+        Feature(_strip(x, size, slots.middle, -1.0, PLATE + 1.0), size * LENGTH * PLATE) for x, size in slots.places()
+    )
     plate = Solid("gauge", ROLE, context.material, Prism(lines_around(corners), 0.0, PLATE), bores, tuple(adds), cuts)
     return plate, Solid("block", ROLE, context.material, block())
 
@@ -101,11 +103,6 @@ def _strip(x: float, thickness: float, middle: float, low: float, high: float) -
 
 def _wall(x: float, thickness: float, middle: float) -> Feature:
     return Feature(_strip(x, thickness, middle, PLATE - _ROOT, PLATE + WALL_HEIGHT), thickness * LENGTH * WALL_HEIGHT)
-
-
-def _slot(x: float, width: float, middle: float) -> Feature:
-    # It extends past both faces, so that no two coincide.
-    return Feature(_strip(x, width, middle, -1.0, PLATE + 1.0), width * LENGTH * PLATE)
 
 
 def _pin(x: float, diameter: float, middle: float) -> Feature:

@@ -125,8 +125,8 @@ def relief_of(
     """
     if run.gauges or (run.by_solid is not None and other_contact(run.sensor) is not None):
         return Relief()
-    options, changes, near = {}, [], [each.best for each in run.answer.dropped]
-    near += [] if run.answer.nearest is None else [run.answer.nearest]
+    options, changes = {}, []
+    near = [*filter(None, [run.answer.nearest]), *(each.best for each in run.answer.dropped)]
     for dropped in run.answer.dropped:
         # The best design of a coarse scan may lose a margin at round sizes.
         name, value = relaxed(run, dropped)
