@@ -41,6 +41,8 @@ _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
 _HOLD_FAR = 50.0
+_SPEEDS = 0.01, 200.0
+"""Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
 _WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
 _WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
@@ -86,6 +88,8 @@ def check_plausible(
         _check_swap(curve, columns, expected, file)
     # A kind that was told is not contradicted by the length of its holds.
     time = None if by_hand or curve.told else _check_time(curve, columns, file)
+    if time is None and not by_hand:
+        time = _speed(curve, columns)
     magnitudes: list[str | None] = []
     if expected is not None:
         magnitudes = [_rise(curve, columns, expected, file)] if by_hand else _magnitudes(curve, columns, expected, file)
@@ -248,6 +252,16 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
             file=file,
             remedy=exchanged(columns, "force", "pressure"),
         )
+
+
+def _speed(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+    """Question about a plate slower or faster than stages are, as in a wrong unit of time; else None."""
+    speeds = [one.indentation / (one.hold[0] - one.contact) for one in curve.indents if one.hold[0] > one.contact]
+    if not speeds or _SPEEDS[0] <= (speed := float(np.median(speeds))) <= _SPEEDS[1]:
+        return None
+    unit = "ms" if speed < _SPEEDS[0] else "min"
+    goes = f"column {columns.time.name}: the plate goes in at {number(speed)} mm/s; are the times in {unit}?"
+    return f"{goes} {otherwise(columns, 'time', unit)}"
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:

@@ -355,6 +355,14 @@ def test_a_force_at_the_end_of_its_channel_is_a_question_in_noise_and_refused_wi
         read(tmp_path, Recording(spoil=lambda s: clipped(s, 0.0)))
 
 
+@pytest.mark.parametrize("name", ["triangular", "steps", "stairs with return"])
+def test_milliseconds_under_a_heading_of_seconds_are_asked_about_with_the_unit(name, tmp_path):
+    recording = replace(READ[name], spoil=channels(0, 1, 2, 3, factors=(1000, 1, 1, 1)))
+    (question,) = asked(read(tmp_path, recording), "goes in at", "are the times in ms?")
+    (text,) = re.findall(r"give `columns` (\S+?), or ", question)
+    assert not asked(read(tmp_path, recording, reading={"columns": parse_columns([text])}), "goes in at")
+
+
 def test_a_tare_is_subtracted_with_a_question(tmp_path):
     measured = read(tmp_path, Recording(tare=12.0))
     assert asked(measured, "12 N before contact")
