@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from pydantic import ValidationError
 
-from pneutouch.spec.campaign import Campaign
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign, campaign_of
 
 
 def campaign(*files):
@@ -23,3 +24,10 @@ def test_one_file_in_two_spellings_is_refused(again):
 def test_other_files_are_not():
     runs = campaign("a-b.csv", "day/a-b.csv", "./A-b.csv", "../a-b.csv").runs
     assert [run.file for run in runs] == ["a-b.csv", "day/a-b.csv", "./A-b.csv", "../a-b.csv"]
+
+
+def test_a_recording_in_the_place_of_a_campaign_is_refused_as_what_it_is(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time_s,position_mm\n0,1\n")
+    with pytest.raises(InputError, match=r"run\.csv: neither a folder with a campaign\.toml nor such a file"):
+        campaign_of(path)

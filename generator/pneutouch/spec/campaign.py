@@ -228,8 +228,9 @@ CAMPAIGN = "campaign.toml"
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
     """Campaign, and folder of its runs, by folder or campaign file. Raises InputError, also for a run outside."""
     path = data / CAMPAIGN if data.is_dir() else data
-    if data.is_dir() and not path.exists():
-        raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
+    if (data.is_dir() and not path.exists()) or (path.is_file() and path.suffix != ".toml"):
+        problem = f"holds no {CAMPAIGN}" if data.is_dir() else f"neither a folder with a {CAMPAIGN} nor such a file"
+        raise InputError(problem, file=data, remedy="`pneutouch plan` writes one to be filled in")
     campaign = validate(Campaign, read_toml(path), str(path))
     for place, run in enumerate(campaign.runs):
         inside(path.parent, run.file, file=path, key=f"runs[{place}].file")
