@@ -37,8 +37,9 @@ def test_force_and_pressure_are_the_prediction_over_the_whole_range(folder, eval
         pressed = press(folder, table.driving_pressure_kPa, travels)
         force = PchipInterpolator(depth, table.force)(travels)
         rise_kPa = PchipInterpolator(depth, table.pressure_kPa - table.driving_pressure_kPa)(travels)
-        assert pressed.force_N == pytest.approx(force, rel=0.01)
-        assert pressed.pressure_kPa - table.driving_pressure_kPa == pytest.approx(rise_kPa, rel=0.01)
+        # The beginning of a curve follows its first resolved states, which are others with more steps.
+        assert pressed.force_N == pytest.approx(force, rel=0.01, abs=2e-3)
+        assert pressed.pressure_kPa - table.driving_pressure_kPa == pytest.approx(rise_kPa, rel=0.01, abs=2e-3)
         assert np.all(pressed.status == 0.0) and np.all(np.abs(pressed.speed_mm_per_s) < 1e-3)
 
 

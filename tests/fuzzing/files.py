@@ -116,7 +116,9 @@ def read_journal(path: Path) -> object:
 
     lines = path.read_bytes().split(b"\n")
     path.write_bytes(b"".join(_checksum(line) + b" " + line + b"\n" for line in lines))
-    return Journal(path, "ab").read()
+    kept: list[object] = []
+    Journal(path, "ab").read(kept.extend)
+    return kept
 
 
 def read_slice(path: Path) -> object:

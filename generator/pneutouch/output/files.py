@@ -58,12 +58,12 @@ def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
     replace_files({path: content}, key=key)
 
 
-Content = bytes | memoryview | Iterable[bytes | memoryview]
+FileContent = bytes | memoryview | Iterable[bytes | memoryview]
 """Content of a file, whole or in pieces."""
 
 
 @uninterrupted()
-def replace_files(files: Mapping[Path, Content], *, key: str = "out") -> None:
+def replace_files(files: Mapping[Path, FileContent], *, key: str = "out") -> None:
     """Write files; existing ones stay until all their replacements are whole and on the disk.
 
     Raises InputError if one cannot be written; ``key`` is the parameter that gives the folder.
@@ -97,11 +97,11 @@ def check_own(paths: Iterable[Path], listing: Path, key: str = "out") -> Mapping
     return {name: stated["files"][name] for name in known}
 
 
-def replace_own(files: Mapping[Path, Content], listing: Path, key: str = "out") -> None:
+def replace_own(files: Mapping[Path, FileContent], listing: Path, key: str = "out") -> None:
     """Write loose files and their manifest. Raises InputError as `check_own` and `replace_files`."""
     entries = dict(check_own(files, listing, key))
 
-    def counted(name: str, content: Content) -> Iterator[bytes | memoryview]:
+    def counted(name: str, content: FileContent) -> Iterator[bytes | memoryview]:
         size, hashed = 0, hashlib.sha256()
         for piece in (content,) if isinstance(content, bytes | memoryview) else content:
             size += len(piece)
@@ -109,11 +109,9 @@ def replace_own(files: Mapping[Path, Content], listing: Path, key: str = "out") 
             yield piece
         entries[name] = plain(FileEntry(hashed.hexdigest(), size))
 
-    def listed() -> Iterator[bytes]:
-        # The last to be written, when the entries of all others are known.
-        yield manifest(dict(sorted(entries.items())), listing.stem)
-
-    replace_files({**{path: counted(path.name, one) for path, one in files.items()}, listing: listed()}, key=key)
+    # The last to be written, when the entries of all others are known.
+    last = (manifest(dict(sorted(entries.items())), listing.stem) for _ in range(1))
+    replace_files({**{path: counted(path.name, one) for path, one in files.items()}, listing: last}, key=key)
 
 
 @uninterrupted()
@@ -130,7 +128,7 @@ def create_file(path: Path, content: bytes, *, key: str = "out") -> None:
         raise _refused(path, error, key) from None
 
 
-def write_synced(path: Path, content: Content) -> None:
+def write_synced(path: Path, content: FileContent) -> None:
     """Write a file that is on the disk when this returns. Raises OSError."""
     with path.open("wb") as file:
         file.writelines((content,) if isinstance(content, bytes | memoryview) else content)
@@ -139,7 +137,7 @@ def write_synced(path: Path, content: Content) -> None:
 
 
 @contextlib.contextmanager
-def _hidden(path: Path, content: Content) -> Iterator[Path]:
+def _hidden(path: Path, content: FileContent) -> Iterator[Path]:
     """A hidden file next to ``path`` with its content, removed at the end unless renamed. Raises OSError."""
     with parent_folders(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -167,9 +165,9 @@ def _link(fresh: Path, path: Path) -> None:
 
 
 def _refused(path: Path, error: OSError, key: str) -> InputError:
-    if os.path.lexists(path.parent) and not path.parent.is_dir():
-        return InputError(f"{path}: {path.parent} is not a folder", key=key, remedy="give a folder you may write to")
-    return InputError(f"{path}: {error.strerror or error}", key=key, remedy="give a folder you may write to")
+    is_file = os.path.lexists(path.parent) and not path.parent.is_dir()
+    problem = f"{path.parent} is not a folder" if is_file else error.strerror or error
+    return InputError(f"{path}: {problem}", key=key, remedy="give a folder you may write to")
 
 
 def check_writable(folder: Path, key: str = "out") -> None:
@@ -314,17 +312,15 @@ def _our_files(folder: Path) -> set[str]:
         manifest = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))
         listed = {name: str(entry["sha256"]) for name, entry in manifest["files"].items()}
     except (InputError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        if not os.path.lexists(folder / MANIFEST):
-            text = f"holds files but no {MANIFEST}: not written by pneutouch"
-            raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one") from None
-        text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
-    else:
-        check_format("manifest", manifest, folder / MANIFEST)
-        for path, stated in ((folder / name, digest_) for name, digest_ in listed.items()):
-            if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != stated):
-                raise _of_others(path)
-        return {*listed, MANIFEST}
-    raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
+        text = f"holds files but no {MANIFEST}: not written by pneutouch"
+        if os.path.lexists(folder / MANIFEST):
+            text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
+        raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one") from None
+    check_format("manifest", manifest, folder / MANIFEST)
+    for path, stated in ((folder / name, digest_) for name, digest_ in listed.items()):
+        if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != stated):
+            raise _of_others(path)
+    return {*listed, MANIFEST}
 
 
 def _of_others(path: Path, key: str = "out") -> InputError:
@@ -368,9 +364,6 @@ def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
 LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
 """Libraries on whose versions the bytes of a build depend."""
 
-_DIGITS = 12
-"""Digits of an input hash."""
-
 
 def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
     """Short digest of the inputs and the version of pneutouch."""
@@ -379,30 +372,21 @@ def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
 
 def short_digest(document: Mapping[str, Any]) -> str:
     """First twelve digits of the SHA-256 of a JSON document."""
-    return digest(json_bytes(document))[:_DIGITS]
+    return digest(json_bytes(document))[:12]
 
 
 def versions() -> dict[str, str]:
     """Versions of pneutouch and of installed `LIBRARIES`, on which the bytes of a build depend."""
-    installed = {name: version for name in LIBRARIES if (version := _installed(name)) is not None}
-    return {"pneutouch": __version__, **installed}
-
-
-def _installed(library: str) -> str | None:
-    try:
-        return importlib.metadata.version(library)
-    except importlib.metadata.PackageNotFoundError:
-        return None
+    found = {"pneutouch": __version__}
+    for name in LIBRARIES:
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+            found[name] = importlib.metadata.version(name)
+    return found
 
 
 def file_entry(content: bytes) -> FileEntry:
     """Entry of a file in a manifest: its digest and its size."""
     return FileEntry(digest(content), len(content))
-
-
-def entry(content: bytes) -> Any:
-    """The entry of a file in a manifest as JSON data."""
-    return plain(file_entry(content))
 
 
 def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:

@@ -27,7 +27,7 @@ from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.formats import versioned
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.models.choice import USUAL, usual_model
-from pneutouch.output.files import MANIFEST, entry, input_hash, json_bytes, manifest, replacing
+from pneutouch.output.files import MANIFEST, file_entry, input_hash, json_bytes, manifest, replacing
 from pneutouch.results.record import plain
 from pneutouch.results.simulation import CampaignTruth, ParameterValue, SimulatedPopulation, SimulatedSpecimen
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
@@ -107,7 +107,7 @@ class _Writer:
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
-        self.files[name] = entry(content)
+        self.files[name] = plain(file_entry(content))
 
 
 @dataclass

@@ -26,8 +26,8 @@ from pneutouch.mechanics.models.choice import USUAL, usual_model
 from pneutouch.output.files import (
     MANIFEST,
     check_writable,
-    entry,
     file_digest,
+    file_entry,
     input_hash,
     json_bytes,
     manifest,
@@ -304,7 +304,7 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
         number = measured.campaign.runs.index(curve.run) + 1
         path = f"evidence/{number:03d}-{file_name(Path(curve.run.file).stem)}.svg"
         files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
-    listed = {name: entry(content) for name, content in sorted(files.items())}
+    listed = {name: plain(file_entry(content)) for name, content in sorted(files.items())}
     files[MANIFEST] = manifest(listed, outcome.name, input_hash=measured.input_hash)
     write_folder(folder, files)
     return folder

@@ -18,7 +18,7 @@ from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models.choice import USUAL
-from pneutouch.output.files import CHARTS_MANIFEST, MANIFEST, Content, check_own, replace_own
+from pneutouch.output.files import CHARTS_MANIFEST, MANIFEST, FileContent, check_own, replace_own
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -240,7 +240,7 @@ def write_companions(out: Path, shown: int = 0) -> tuple[list[dict[str, Any]], l
 
     content = stored_dataset(out)
     swept = swept_figure(content)
-    files: dict[Path, Content] = {out.with_suffix(".csv"): table_csv(table_rows(content))}
+    files: dict[Path, FileContent] = {out.with_suffix(".csv"): table_csv(table_rows(content))}
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))

@@ -11,7 +11,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
@@ -20,13 +20,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.errors import InputError
-from pneutouch.output.files import digest
+from pneutouch.output.files import digest, write_synced
 from pneutouch.spec.files import check_plain
 from pneutouch.stopping import cleaned, uninterrupted
 from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 _CHECKSUM_DIGITS = 16
+
+
+MOST_LINE = 2**26
+"""Bytes of a line that are read at once: ten times those of a chunk with fifty driving pressures a point."""
 
 
 class SweepColumns:
@@ -53,11 +57,11 @@ class SweepColumns:
         """Fill in points; one without a state for each of its driving pressures is left to be computed again."""
         for record in records:
             i = record["point"]
-            requested = self.study.point(i).driving_pressures_kPa if 0 <= i < self._done.size else ()
-            if len(requested) != len(record["states"]) or not requested:
+            requested_kPa = self.study.point(i).driving_pressures_kPa if 0 <= i < self._done.size else ()
+            if len(requested_kPa) != len(record["states"]) or not requested_kPa:
                 continue
             _fill(self.points, i, record["values"])
-            for pressure_kPa, state in zip(requested, record["states"], strict=True):
+            for pressure_kPa, state in zip(requested_kPa, record["states"], strict=True):
                 _fill(self.states, i * len(self.pressures_kPa) + self.pressures_kPa.index(pressure_kPa), state)
             self._done[i] = True
 
@@ -86,18 +90,17 @@ class Journal:
             return
         check_plain(self.path, "journal")
         whole = True
-        with self.path.open("rb") as file:
-            for line in file:
-                entry = _entry(line.removesuffix(b"\n"))
-                whole = whole and entry is not None and line.endswith(b"\n")
-                if entry is not None and entry.sweep != self.fingerprint:
-                    problem = (
-                        "holds the progress of another sweep: the design, a material, the printer, the model, the "
-                        "values or the version has changed"
-                    )
-                    remedy = "`fresh` starts over, or give another `out`"
-                    raise InputError(problem, file=self.path.parent, remedy=remedy)
-                keep([] if entry is None else entry.records)
+        for line in self._lines():
+            entry = _entry(line.removesuffix(b"\n"))
+            whole = whole and entry is not None and line.endswith(b"\n")
+            if entry is not None and entry.sweep != self.fingerprint:
+                problem = (
+                    "holds the progress of another sweep: the design, a material, the printer, the model, the values "
+                    "or the version has changed"
+                )
+                remedy = "`fresh` starts over, or give another `out`"
+                raise InputError(problem, file=self.path.parent, remedy=remedy)
+            keep([] if entry is None else entry.records)
         if not whole:
             self._rewrite()
 
@@ -109,11 +112,18 @@ class Journal:
             file.flush()
             os.fsync(file.fileno())
 
+    def _lines(self) -> Iterator[bytes]:
+        """Lines of the file; a longer one than any entry in parts, of which none is one."""
+        with self.path.open("rb") as file:
+            while line := file.readline(MOST_LINE):
+                yield line
+
     def _rewrite(self) -> None:
         """Rewrite the file with its whole lines, because a line appended to a cut one would be lost with it."""
-        lines = [line for line in self.path.read_bytes().split(b"\n") if _entry(line) is not None]
+        texts = (line.removesuffix(b"\n") for line in self._lines())
+        kept = (text + b"\n" for text in texts if _entry(text) is not None)
         fresh = self.path.with_name(f"{self.path.name}.new")
-        replace_whole(fresh, self.path, lambda path: path.write_bytes(b"".join(line + b"\n" for line in lines)))
+        replace_whole(fresh, self.path, lambda path: write_synced(path, kept))
 
 
 def replace_whole(fresh: Path, target: Path, write: Callable[[Path], object]) -> None:
