@@ -97,8 +97,7 @@ class Window:
     @cached_property
     def squares(self) -> Array:
         """Squared distances (r, c) of the centres from the z axis, mm2."""
-        square: Array = self.y[:, None] ** 2 + self.x[None, :] ** 2
-        return square
+        return np.asarray(self.y[:, None] ** 2 + self.x[None, :] ** 2)
 
     def within(self, low: Array, high: Array) -> tuple[slice, slice]:
         """Slices of the rows and the columns inside a box with corners (x, y, ...), mm; x and y may also descend."""

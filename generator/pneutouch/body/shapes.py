@@ -186,13 +186,11 @@ class Frame:
 
     def out(self, points: Array) -> Array:
         """Points (n, 3), mm, from coordinates of this frame into those of the solid."""
-        moved: Array = points @ self.rotation.T + np.array(self.origin)
-        return moved
+        return np.asarray(points @ self.rotation.T + np.array(self.origin))
 
     def into(self, points: Array) -> Array:
         """Points (n, 3), mm, from coordinates of the solid into those of this frame."""
-        moved: Array = (points - np.array(self.origin)) @ self.rotation
-        return moved
+        return np.asarray((points - np.array(self.origin)) @ self.rotation)
 
 
 class Shape(Protocol):
@@ -262,8 +260,7 @@ class Prism:
         axial = np.maximum(np.maximum(self.low - height, height - self.high), 0.0)
         to_face = np.minimum(np.abs(height - self.low), np.abs(height - self.high))
         inside = _inside(plane, polygon(self.outline, 1e-4))
-        nearest: Array = np.minimum(np.hypot(across, axial), np.where(inside, to_face, np.hypot(across, to_face)))
-        return nearest
+        return np.asarray(np.minimum(np.hypot(across, axial), np.where(inside, to_face, np.hypot(across, to_face))))
 
 
 @dataclass(frozen=True, slots=True)

@@ -111,8 +111,7 @@ class Body:
         """Points (n, 3), mm, of a grid on every triangle, ``parts`` steps along each edge, to measure deviations."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
         weights = np.array([(i, j, parts - i - j) for i, j in grid], float) / parts
-        points: Array = np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3)
-        return points
+        return np.asarray(np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3))
 
 
 _EDGE_COSINE = math.cos(math.radians(40))
@@ -309,8 +308,7 @@ class Solid:
     def distance(self, points: Array) -> Array:
         """Distances (n,) of points (n, 3), mm, from the nearest surface of any of its shapes, covered parts too."""
         shapes = [self.base, *self.bores, *(feature.shape for feature in (*self.adds, *self.cuts))]
-        nearest: Array = np.min([shape.distance(points) for shape in shapes], axis=0)
-        return nearest
+        return np.asarray(np.min([shape.distance(points) for shape in shapes], axis=0))
 
     def mesh(self, tolerance: float) -> Body:
         """The body with its print mesh, within ``tolerance`` mm of the exact surface."""

@@ -87,8 +87,7 @@ class Assembly:
     def print_offset(self) -> Array:
         """Shift (3,) in mm from the design frame to the print frame, whole millimetres."""
         low = np.min([body.bounds[0] for body in self.bodies], axis=0)
-        offset: Array = np.ceil(_MARGIN - low)
-        return offset
+        return np.asarray(np.ceil(_MARGIN - low))
 
     def deviation(self, body: Body) -> float:
         """Greatest distance in mm of a body's mesh from its exact surface, measured on dense points."""

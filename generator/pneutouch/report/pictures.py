@@ -80,8 +80,7 @@ def _shades(body: ShadedBody) -> Array:
     """Colours at the corners, (n, 3, 3): ambient light, diffuse light from the upper left, a little from above."""
     diffuse = np.clip(body.normals @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
     shade = body.relief * (0.42 + 0.62 * diffuse + 0.05 * body.normals[..., 2]) + (1.0 - body.relief)
-    lit: Array = np.clip(shade[..., None] * body.colours, 0, 1)
-    return lit
+    return np.asarray(np.clip(shade[..., None] * body.colours, 0, 1))
 
 
 def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
@@ -309,5 +308,4 @@ def grade_colours(grading: ArcGrading, shape: DomeShape, points: Array) -> Array
     light, dark = (np.array(list(bytes.fromhex(colour[1:]))) / 255 for colour in GRADE_COLOURS)
     arc = shape.arc_share(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     share = np.interp(arc, grading.arc, grading.stiff_fraction)[:, None] / greatest_share(grading)
-    colours: Array = light + share * (dark - light)
-    return colours
+    return np.asarray(light + share * (dark - light))

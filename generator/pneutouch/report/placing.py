@@ -112,8 +112,7 @@ def _curves(ax: Axes) -> Array:
         points.append(_dense(np.asarray(patch.get_transform().transform_path(patch.get_path()).vertices, float)))
     every = np.concatenate(points)
     inside = (every >= frame.min).all(axis=1) & (every <= frame.max).all(axis=1)
-    kept: Array = every[inside]
-    return kept
+    return np.asarray(every[inside])
 
 
 _RIM = np.array([(0.0, 0.0), *((np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4)])
@@ -128,8 +127,7 @@ def _dense(xy: Array) -> Array:
     ends = np.cumsum(count)
     which = np.repeat(np.arange(count.size), count)
     share = (np.arange(ends[-1]) - (ends - count)[which]) / (count - 1)[which]
-    dense: Array = xy[which] + share[:, None] * leap[which]
-    return dense
+    return np.asarray(xy[which] + share[:, None] * leap[which])
 
 
 def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:

@@ -310,8 +310,7 @@ def _label_lines(ax: Axes, contours: Any) -> None:
 def missing_cells(panel: MapPanel, reason: str) -> Array:
     """True for every cell between four points, (n - 1, m - 1), of which one or more is missing for the reason."""
     at = np.array(panel.reasons) == reason
-    cells: Array = at[:-1, :-1] | at[1:, :-1] | at[:-1, 1:] | at[1:, 1:]
-    return cells
+    return np.asarray(at[:-1, :-1] | at[1:, :-1] | at[:-1, 1:] | at[1:, 1:])
 
 
 def _outline(x: Array, y: Array, cells: Array, look: dict[str, Any]) -> PathPatch:

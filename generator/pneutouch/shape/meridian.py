@@ -58,8 +58,7 @@ class Line:
         """Distances, shape (n,), of (n, 2) points in the (r, z) plane from the piece."""
         start = np.asarray(self.start)
         along = np.asarray(self.end) - start
-        gap: Array = np.linalg.norm(points - start - self.share(points)[:, None] * along, axis=1)
-        return gap
+        return np.asarray(np.linalg.norm(points - start - self.share(points)[:, None] * along, axis=1))
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Smallest and largest r, then smallest and largest z."""
@@ -150,8 +149,7 @@ class Arc:
             np.linalg.norm(points - np.asarray(self.end), axis=1),
         )
         radial = np.abs(np.hypot(offset[:, 0], offset[:, 1]) - self.radius)
-        gap: Array = np.where(angle <= high, radial, to_ends)
-        return gap
+        return np.asarray(np.where(angle <= high, radial, to_ends))
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Smallest and largest r, then smallest and largest z."""
@@ -214,8 +212,7 @@ class Meridian:
     def distance(self, points: Array) -> Array:
         """Distances (n,) in mm of points (n, 3) from the exact surface of the solid of revolution."""
         plane = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
-        nearest: Array = np.min([piece.distance(plane) for piece in self.pieces], axis=0)
-        return nearest
+        return np.asarray(np.min([piece.distance(plane) for piece in self.pieces], axis=0))
 
 
 TracedPath = list[tuple[str, Point]]

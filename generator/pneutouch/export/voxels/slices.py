@@ -120,8 +120,7 @@ class Thresholds:
         z = (number + shift[0] % depth)[at] % depth
         y = (row[:, None] + (shift[1] % height)[at]) % height
         x = (column[None, :] + (shift[2] % width)[at]) % width
-        part: Array = self.values[z, y, x]
-        return part
+        return np.asarray(self.values[z, y, x])
 
 
 def _shifts(block: int, row: Indices, column: Indices, seed: int) -> tuple[Indices, Indices, Indices]:

@@ -153,8 +153,7 @@ def solve_definite(band: Array, b: Array) -> Array | None:
     factor, info = lapack.dpbtrf(band, lower=1)
     if info:
         return None
-    x: Array = lapack.dpbtrs(factor, b, lower=1)[0]
-    return x
+    return np.asarray(lapack.dpbtrs(factor, b, lower=1)[0])
 
 
 def is_definite(band: Array) -> bool:

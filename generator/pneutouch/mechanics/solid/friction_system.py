@@ -137,8 +137,7 @@ class LeadingElimination:
 
     def leading(self, b: Array) -> Array:
         """Product A^-1 b, (first, n_rhs)."""
-        x: Array = lapack.dpbtrs(self.factor, b, lower=1)[0] if self.first else b
-        return x
+        return np.asarray(lapack.dpbtrs(self.factor, b, lower=1)[0] if self.first else b)
 
     def onto_rest(self, x: Array) -> Array:
         """Product B x, (size - first, n_rhs), for leading unknowns x (first, n_rhs)."""

@@ -80,8 +80,7 @@ def grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
     corner = (2 * np.arange(n_columns)[:, None] * height + 2 * np.arange(n_rows)[None, :]).reshape(-1, 1)
     right, up = 2 * height, 2
     offsets = [0, right, right + up, up, height, right + 1, height + up, 1, height + 1]
-    cells: Index = (corner + np.array(offsets)[None, :nodes_per_cell]).astype(np.intp)
-    return cells
+    return np.asarray((corner + np.array(offsets)[None, :nodes_per_cell]).astype(np.intp))
 
 
 def boundary(n_columns: int, height: int, row: int) -> Index:

@@ -131,8 +131,7 @@ class RelaxationRun:
 
     def percent(self, values: Array) -> Array:
         """Values at all times of a run that `holds`, in percent of the value at 1 s."""
-        shares: Array = 100 * values / values[self._late[0]]
-        return shares
+        return np.asarray(100 * values / values[self._late[0]])
 
     def drop(self, values: Array) -> tuple[float, float]:
         """Loss of ``values`` from 1 s to the end, and per decade of time (least squares over log10 t from 1 s), both

@@ -146,8 +146,7 @@ class MouldAssembly:
     def print_offset(self) -> Array:
         """Shift (3,) in mm from the design frame to positive coordinates, whole millimetres."""
         low = np.min([body.bounds[0] for body in self.bodies], axis=0)
-        offset: Array = np.ceil(1.0 - low)
-        return offset
+        return np.asarray(np.ceil(1.0 - low))
 
     @property
     def thickness(self) -> float:

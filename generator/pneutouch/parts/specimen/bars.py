@@ -39,8 +39,7 @@ def places(layer: Bars, context: PatternContext) -> Array:
     pitch = layer.pitch(context.speed)
     first = start + layer.offset_mm
     count = math.floor((end - first - layer.width_mm) / pitch + 1e-9) + 1
-    sides: Array = np.round(first + pitch * np.arange(max(count, 0)), DECIMALS)
-    return sides
+    return np.asarray(np.round(first + pitch * np.arange(max(count, 0)), DECIMALS))
 
 
 def box(layer: Bars, context: PatternContext, number: int) -> Box:

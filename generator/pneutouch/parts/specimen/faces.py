@@ -40,8 +40,7 @@ def boundary(triangles: Indices, size: int) -> Indices:
     """Directed edges (n, 2) that triangles have in one direction only; ``size`` is the number of vertices."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     outward, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
-    border: Indices = edges[~np.isin(outward, back)]
-    return border
+    return np.asarray(edges[~np.isin(outward, back)])
 
 
 def cut_places(spans: Array) -> list[float]:
@@ -186,12 +185,10 @@ def _filled(points: Array, group: _Group) -> Indices:
 
     outer = group.outer
     if not group.holes and len(outer) == 4 and _convex(points[outer]):
-        quad: Indices = outer[np.array([[0, 1, 2], [0, 2, 3]])]
-        return quad
+        return np.asarray(outer[np.array([[0, 1, 2], [0, 2, 3]])])
     loops = [outer, *group.holes]
     flat = triangulate([np.ascontiguousarray(points[loop]) for loop in loops])
-    triangles: Indices = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
-    return triangles
+    return np.asarray(np.concatenate(loops)[np.asarray(flat)].astype(np.int64))
 
 
 def _convex(corners: Array) -> bool:

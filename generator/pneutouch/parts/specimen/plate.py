@@ -95,8 +95,7 @@ class _Mesh:
             number[k] = self._known[key]
         if fresh:
             self._add(np.array(fresh))
-        turned: Indices = number[flat][:, ::-1]
-        return turned
+        return np.asarray(number[flat][:, ::-1])
 
     def ring(self, line: Array, height: float) -> Indices:
         """Numbers of the vertices of a loop, added at a height."""

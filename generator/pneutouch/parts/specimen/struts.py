@@ -346,8 +346,7 @@ def _distances(kind: str, cell: float) -> Array:
     lattice = Lattice(kind, cell, 0.3 * cell, 8)
     line = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     points = np.array(list(itertools.product(line, line, line)))
-    distance: Array = 0.5 * cell * lattice.distance(points)
-    return distance
+    return np.asarray(0.5 * cell * lattice.distance(points))
 
 
 FAMILY = PatternFamily(box, draw)

@@ -144,8 +144,7 @@ def _crossed(below: Flags, path: tuple[int, ...], tables: dict[int, list[list[tu
 def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -> Indices:
     """Key of a grid edge in one number: its lower node, and the axes along which it runs, as three bits."""
     towards = int((steps[high] - steps[low]) @ np.array([4, 2, 1]))
-    key: Indices = (node + steps[low] @ strides) * 8 + towards
-    return key
+    return np.asarray((node + steps[low] @ strides) * 8 + towards)
 
 
 def _places(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float, keys: Indices) -> Array:
@@ -164,8 +163,7 @@ def _places(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float
         near, one = np.where(same, share, near), np.where(same, value, one)
         far, other = np.where(same, far, share), np.where(same, other, value)
     share = near + (far - near) * (level - one) / np.where(other == one, 1.0, other - one)
-    placed: Array = start + np.clip(share, _NEAREST, 1 - _NEAREST)[:, None] * (end - start)
-    return placed
+    return np.asarray(start + np.clip(share, _NEAREST, 1 - _NEAREST)[:, None] * (end - start))
 
 
 def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
@@ -197,18 +195,15 @@ Form = Literal["sheet", "network"]
 
 
 def _gyroid(x: Array, y: Array, z: Array) -> Array:
-    level: Array = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
-    return level
+    return np.asarray(np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x))
 
 
 def _schwarz_p(x: Array, y: Array, z: Array) -> Array:
-    level: Array = np.cos(x) + np.cos(y) + np.cos(z)
-    return level
+    return np.asarray(np.cos(x) + np.cos(y) + np.cos(z))
 
 
 def _diamond(x: Array, y: Array, z: Array) -> Array:
-    level: Array = np.cos(x) * np.cos(y) * np.cos(z) - np.sin(x) * np.sin(y) * np.sin(z)
-    return level
+    return np.asarray(np.cos(x) * np.cos(y) * np.cos(z) - np.sin(x) * np.sin(y) * np.sin(z))
 
 
 SURFACES: dict[str, PeriodicFunction] = {"gyroid": _gyroid, "schwarz-p": _schwarz_p, "diamond": _diamond}
@@ -285,8 +280,7 @@ class PeriodicSurface:
         return self._wave(middle[:, None, None], middle[None, :, None], middle[None, None, :]).reshape(-1)
 
     def _wave(self, x: Array, y: Array, z: Array) -> Array:
-        level: Array = np.asarray(SURFACES[self.kind](x, y, z))
-        return level
+        return np.asarray(SURFACES[self.kind](x, y, z))
 
 
 def fill(surface: PeriodicSurface, box: Box, fraction: float) -> Mesh:

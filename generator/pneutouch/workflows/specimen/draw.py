@@ -112,8 +112,7 @@ class SpecimenBodies:
     @cached_property
     def offset(self) -> Array:
         """Shift (3,) in mm to the print frame, in which no coordinate is negative."""
-        shift: Array = -np.min([body.bounds[0] for body in self.bodies], axis=0) + 0.0
-        return shift
+        return np.asarray(-np.min([body.bounds[0] for body in self.bodies], axis=0) + 0.0)
 
     @property
     def printed(self) -> tuple[Body, ...]:

@@ -40,8 +40,7 @@ class TrayPart:
     @property
     def size(self) -> Array:
         """Extent (3,) in the part's frame, mm."""
-        size: Array = np.max([body.bounds[1] for body in self.bodies], axis=0)
-        return size
+        return np.asarray(np.max([body.bounds[1] for body in self.bodies], axis=0))
 
     @property
     def footprint(self) -> tuple[float, float]:
