@@ -73,22 +73,11 @@ AnywhereOption = Annotated[
         help="Count an unknown object and place of contact in the interval; short for --set contact.anywhere=true.",
     ),
 ]
+_MODEL_HELP = "Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough)."
 ModelOption = Annotated[
-    str | None,
-    typer.Option(
-        "--model",
-        help="Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough).",
-        show_default="solid; harmonic for contact off the axis",
-    ),
+    str | None, typer.Option("--model", help=_MODEL_HELP, show_default="solid; harmonic for contact off the axis")
 ]
-AnswerModelOption = Annotated[
-    str | None,
-    typer.Option(
-        "--model",
-        help="Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough).",
-        show_default="auto",
-    ),
-]
+AnswerModelOption = Annotated[str | None, typer.Option("--model", help=_MODEL_HELP, show_default="auto")]
 ToleranceOption = Annotated[
     str | None,
     typer.Option(

@@ -150,9 +150,9 @@ def check(
             listed = [f.stated for f in findings]
             print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:
-            from pneutouch.cli.prediction_text import findings_text
+            from pneutouch.cli.prediction_text import finding_line
 
-            echo(findings_text(findings))
+            echo("\n".join(f"{finding_line(one)}  [{one.source}]" for one in findings) or "no findings")
             if not broken:
                 report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
         if broken:

@@ -7,15 +7,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.declared import (
-    READING_FIELDS,
-    ColumnsOption,
-    given,
-    reading_of,
-    reading_text,
-    with_fields,
-    with_options,
-)
+from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.options import CalibrationOptions
@@ -47,6 +39,7 @@ def calibrate(
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
         from pneutouch.workflows.calibrate.calibrate import run_calibration
+        from pneutouch.workflows.characterize.load import reading_text
 
         asked = given(CalibrationOptions, fields)
         with bar("reading runs", unit="MB") as progress:

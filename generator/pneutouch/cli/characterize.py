@@ -19,7 +19,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
-from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
+from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_words, with_fields
 from pneutouch.cli.terminal import bar, notify, report_next, set_words
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.campaign import Campaign, RunKind
@@ -82,7 +82,7 @@ def characterize(
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.workflows.characterize.campaign import characterize as run
         from pneutouch.workflows.characterize.campaign import write
-        from pneutouch.workflows.characterize.load import same_failures
+        from pneutouch.workflows.characterize.load import reading_text, same_failures
 
         _check(evidence, kind)
         with bar("reading runs", unit="MB") as progress:

@@ -7,7 +7,7 @@ import typing
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import typer
 from pydantic import BaseModel
@@ -17,9 +17,6 @@ from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.fields import Declaration, declaration, declarations, entries_of, extra_of, table_of
 from pneutouch.spec.options import AnyOptions, Options, flag_of, options_of
 from pneutouch.spec.values import plain_number
-
-if TYPE_CHECKING:
-    from pneutouch.results.measured import ReadFiles
 
 
 class FieldOption(NamedTuple):
@@ -224,10 +221,3 @@ def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> l
         if fields.get(name) is not None:
             words += [f"--{name.replace('_', '-')}", str(fields[name])]
     return words
-
-
-def reading_text(read_as: "Iterable[ReadFiles]") -> str:
-    """Notes on the columns and formats that were guessed from the files, with lines for campaign.toml to keep them."""
-    from pneutouch.workflows.characterize.load import reading_text as text
-
-    return text(read_as)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pneutouch.cli.terminal import table_text
@@ -223,11 +223,6 @@ def _span(percents: list[float | None]) -> str:
         return "not known"
     ends = f"{min(known):.1f} %" if len(known) == 1 else f"{min(known):.1f} to {max(known):.1f} %"
     return ends if len(known) == len(percents) else f"{ends} (not known by every source)"
-
-
-def findings_text(findings: Iterable[Finding]) -> str:
-    """Findings with their sources, one a line, or the words that there are none."""
-    return "\n".join(f"{finding_line(finding)}  [{finding.source}]" for finding in findings) or "no findings"
 
 
 def finding_line(finding: Finding) -> str:

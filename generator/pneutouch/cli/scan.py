@@ -22,7 +22,7 @@ from pneutouch.cli.app import (
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, table_text
-from pneutouch.results.scan import FavouringState, ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
+from pneutouch.results.scan import ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of
 
 SpecimenArgument = Annotated[
@@ -153,7 +153,11 @@ def separation_text(record: SeparationRecord) -> str:
             dome.resin,
             f"{dome.inner_radius_mm:.2f}",
             f"{dome.wall_thickness_mm:.2f}",
-            *(cell for state in dome.states for cell in _favouring(state)),
+            *(
+                cell
+                for state in dome.states
+                for cell in (f"{state.driving_pressure_kPa:.1f}", "/".join(map(_pascals, state.amplitudes_kPa)))
+            ),
             f"{dome.contrast:.3g}",
         ]
         for dome in record.domes
@@ -161,7 +165,3 @@ def separation_text(record: SeparationRecord) -> str:
     head = ["", "resin", "R0 mm", "t0 mm", "1st: kPa", "Pa", "2nd: kPa", "Pa", "contrast"]
     first = f"1st pattern {one}, 2nd {two}; {record.candidates} candidates at {record.preload_N:g} N"
     return "\n".join([first, "", table_text(head, rows)])
-
-
-def _favouring(state: FavouringState) -> list[str]:
-    return [f"{state.driving_pressure_kPa:.1f}", "/".join(map(_pascals, state.amplitudes_kPa))]
