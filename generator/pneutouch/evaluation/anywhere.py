@@ -57,6 +57,7 @@ def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart 
     offset, tilt = size * np.linspace(0.0, FARTHEST, _POINTS), np.linspace(0.0, STEEPEST_TILT, _POINTS)
     ball = np.full(_POINTS, size * _DRAWN_BALL)
     walls, still = domes.wall_ratio, np.zeros(_POINTS)
+    widest = max(float(np.interp(state.range_end, state.indentation, state.contact_radius)) for state in states)
 
     def drawn(places: ContactPlaces) -> tuple[Array, ...]:
         return tuple(_percent(domes, places, levels[:, :1])[:, :, 0])
@@ -73,7 +74,7 @@ def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart 
         ball_radius=size * _DRAWN_BALL,
         rows=_rows(domes, levels, size),
         standard_uncertainties=tuple(place_uncertainty(domes, ends).tolist()),
-        free_offset=_free_offset(sensor, states),
+        free_offset=max(sensor.protocol.plate_radius - widest, 0.0),
     )
 
 
@@ -146,9 +147,3 @@ def _at_travels(
     """Values of each state's curve at its travels (n, k), mm."""
     rows = [np.interp(row, state.indentation, curve(state)) for state, row in zip(states, travels, strict=True)]
     return tuple(tuple(row.tolist()) for row in rows)
-
-
-def _free_offset(sensor: Sensor, states: Sequence[SensorState]) -> float:
-    """Offset of a plate from the axis at which the contact reaches its edge, mm."""
-    widest = max(float(np.interp(s.range_end, s.indentation, s.contact_radius)) for s in states)
-    return max(sensor.protocol.plate_radius - widest, 0.0)

@@ -17,7 +17,6 @@ from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.glue import glue_of, glue_surfaces
-from pneutouch.parts.layout import Layout
 from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.measure.mould import LEAVES
 from pneutouch.printability.rulebook import check_mould, mould_subject
@@ -51,6 +50,7 @@ _RING_HINTS = {
 def subject_of(assembly: Assembly) -> PrintSubject:
     """The bodies of a sensor as they stand in their machines, and the faces that membrane, connector and ring share."""
     scene, layout = assembly.scene, assembly.layout
+    hints = _HINTS if layout.ring is None else {**_HINTS, RING: _RING_HINTS}
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         printer, mode = assembly.machine(body.name)
@@ -63,7 +63,7 @@ def subject_of(assembly: Assembly) -> PrintSubject:
                 up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0),
                 job=assembly.job(body.name),
                 sensing=_outer_wall(assembly) if body.name == "membrane" else None,
-                hints=_hints(body.name, layout),
+                hints=hints.get(body.name, _HINTS["connector"]),
                 insert=assembly.solid(RING) if body.name == "membrane" and layout.ring is not None else None,
             )
         )
@@ -73,12 +73,6 @@ def subject_of(assembly: Assembly) -> PrintSubject:
     if layout.ring is not None:
         joints.append(Joint(RING, "connector", layout.ring.foot_area, where))
     return PrintSubject(tuple(items), tuple(joints), scene.name)
-
-
-def _hints(body: str, layout: Layout) -> dict[str, str]:
-    if body == RING and layout.ring is not None:
-        return _RING_HINTS
-    return _HINTS.get(body, _HINTS["connector"])
 
 
 def glued_seat(scene: ResolvedDesign) -> GluedSeat | None:

@@ -53,6 +53,11 @@ _LAW_NOTE = (
     "wall with the modulus fitted over the same stretches (docs/reference/materials.md sets both side by side)"
 )
 
+_SOFT_NOTE = (
+    "the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "
+    "solid's, their relative uncertainty is by the derivatives of the atlas's tables, whose states hold without gas"
+)
+
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
     """Notes on the uncertainty of a graded wall and of a fitted law; empty for other walls."""
@@ -93,15 +98,6 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
     why = outside_atlas(under_plate(sensor))
     return None if why is None else f"the sensor is outside the atlas: {why}"
-
-
-def _soft_note(sensor: Sensor) -> str:
-    """Note on the derivatives of a wall that is softer than the walls that the atlas covers."""
-    gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
-    return (
-        f"the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "
-        "solid's, their relative uncertainty is by the derivatives of the atlas's tables, whose states hold without gas"
-    )
 
 
 class SensorSpread(NamedTuple):
@@ -202,7 +198,8 @@ def uncertainties(
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
     if unknown(sensor, model) is not None:
-        notes_of_wall += (_soft_note(sensor),)
+        gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
+        notes_of_wall += (_SOFT_NOTE.format(gas=gas),)
     from pneutouch.mechanics.atlas.figures import FIGURES
     from pneutouch.mechanics.uncertainty.document import document, gas_text, text
 

@@ -9,12 +9,11 @@ import numpy as np
 from pneutouch.evaluation.sheet_data import ContactChart, ContactRow, ErrorCurves
 from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
 from pneutouch.report.chart import Chart, Note, Panel, PlotLine, drawn_svg
+from pneutouch.report.numbers import DASH
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS
 
 _SIZE = (57.0, 58.0)
 """Width and height of a chart in mm: a third of the width of the text on A4."""
-
-DASH = "–"
 
 _LOOKS = (PlotLine(tone=INK, dashes=LINES[0], width=1.6), PlotLine(tone=ACCENT, dashes=LINES[1], width=1.6))
 """Line styles of the lowest and the highest driving pressure."""

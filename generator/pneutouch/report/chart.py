@@ -16,7 +16,6 @@ from pneutouch.report.style import (
     INK,
     LINES,
     MUTED,
-    Label,
     band,
     figure,
     label_ends,
@@ -178,9 +177,10 @@ def draw_panel(ax: Axes, panel: Panel) -> None:
     _ticks(ax, panel)
     if panel.title:
         ax.set_title(plain_text(panel.title), fontsize=7.5, loc="left", pad=3)
-    ends = _ends(panel)
-    if ends:
-        label_ends(ax, ends)
+    if ended := [line for line in panel.lines if line.end and len(line.x)]:
+        looks = [{"color": INK, **BOLD} if line.picked else {"color": MUTED} for line in ended]
+        ends = zip(ended, looks, strict=True)
+        label_ends(ax, [(float(line.x[-1]), float(line.y[-1]), plain_text(line.end), look) for line, look in ends])
     for one in panel.notes:
         note(ax, plain_text(one.text), one.at, one.side, color=one.tone, **(BOLD if one.bold else {}))
 
@@ -245,19 +245,6 @@ def _ticks(ax: Axes, panel: Panel) -> None:
     if panel.columns:
         ax.set_xticks(range(len(panel.columns)), list(map(plain_text, panel.columns)))
         ax.tick_params(axis="x", labelrotation=30 if len(panel.columns) > 4 else 0)
-
-
-def _ends(panel: Panel) -> list[Label]:
-    return [
-        (
-            float(one.x[-1]),
-            float(one.y[-1]),
-            plain_text(one.end),
-            {"color": INK, **BOLD} if one.picked else {"color": MUTED},
-        )
-        for one in panel.lines
-        if one.end and len(one.x)
-    ]
 
 
 def plain_text(text: str) -> str:

@@ -131,18 +131,13 @@ def _spots(k: int) -> PlotLine:
     return PlotLine(tone=tone, dashes="", marker=marker, size=2.8, over=4)
 
 
-def _legend(looks: Sequence[PlotLine], names: Sequence[str]) -> tuple[list[PlotLine], int]:
-    """Entries of a legend, long names cut, and its columns: 2 if all names fit into half the width, else 1."""
+def _drawn(panel: Panel, height: float, looks: Sequence[PlotLine], names: Sequence[str]) -> str:
+    """SVG of a panel ``height`` mm high with the legend of the sensors, long names cut, above it."""
     entries = [
         replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…")
         for look, name in zip(looks, names, strict=True)
     ]
-    return entries, 2 if max(map(len, names), default=0) <= _SHORT else 1
-
-
-def _drawn(panel: Panel, height: float, looks: Sequence[PlotLine], names: Sequence[str]) -> str:
-    """SVG of a panel ``height`` mm high with the legend of the sensors above it."""
-    entries, keys = _legend(looks, names)
+    keys = 2 if max(map(len, names), default=0) <= _SHORT else 1
     high = height + 4 * math.ceil(len(names) / keys)
     return drawn_svg(Chart((replace(panel, lines=(*panel.lines, *entries)),), (SIZE[0], high), keys=keys))
 

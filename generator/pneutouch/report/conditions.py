@@ -8,11 +8,11 @@ from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
 from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
+from pneutouch.report.numbers import DASH
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
 
 NOT_TESTED = "not tested"
-DASH = "–"
 
 
 def environment(sheet: SheetData) -> list[list[str]]:

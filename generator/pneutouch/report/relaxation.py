@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pneutouch.evaluation.sheet_data import AgeingData, SheetData
 from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
 from pneutouch.report.chart import Panel, PlotLine, drawn_svg
+from pneutouch.report.numbers import DASH
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED
 from pneutouch.results.behaviour import BySource, Viscous, WholeLoop
 from pneutouch.units import KPA
@@ -20,7 +21,6 @@ HEAD = (
     "Hysteresis, slow\n% of full scale",
     "Hysteresis, quick\n% of full scale",
 )
-_DASH = "–"
 _CONTACT_LOST = (
     "The dome returns more slowly than the plate: contact is lost {:.1f} to {:.1f} mm before the plate is back, "
     "and the loop ends there."
@@ -91,7 +91,7 @@ def _cells(pressure_kPa: float, series: int, one: BySource) -> list[str]:
     held = one.relaxation
     losses = held.force_loss_percent, held.pressure_rise_loss_percent, held.pressure_rise_loss_percent_per_decade
     widths = (loop.width_percent if isinstance(loop, WholeLoop) else None for loop in one.hysteresis)
-    percents = [_DASH if value is None else f"{value:.1f}" for value in (*losses, *widths)]
+    percents = [DASH if value is None else f"{value:.1f}" for value in (*losses, *widths)]
     return [f"{pressure_kPa:g}", _letter(series), *percents]
 
 

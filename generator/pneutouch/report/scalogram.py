@@ -50,7 +50,9 @@ def scalogram_chart(
         drawn.set_dpi(_DPI)
         axes = drawn.subplots(2, len(states), squeeze=False, sharex="col", sharey="row", height_ratios=(1, 2.1))
         for (above, below), state in zip(axes.T, states, strict=True):
-            _draw_signal(above, state)
+            time, pressure = _outline(state.signal)
+            above.plot(time, pressure / KPA, color=INK, lw=0.6)
+            above.set_title(state.label, fontsize=7.5, **BOLD)
             mesh = _draw_scalogram(below, state.scalogram, top)
             for frequency in expected.values():
                 below.axhline(frequency, color=INK, lw=0.7, ls=LINES[1])
@@ -72,14 +74,8 @@ def _loudest(scalogram: Scalogram) -> float:
     return float((inside if inside.size else scalogram.amplitude).max()) / KPA or 1.0
 
 
-def _draw_signal(ax: Axes, state: ScannedState) -> None:
-    """Draw the signal; if it has many samples, the least and the greatest value in each of `_COLUMNS` parts."""
-    time, pressure = _outline(state.signal)
-    ax.plot(time, pressure / KPA, color=INK, lw=0.6)
-    ax.set_title(state.label, fontsize=7.5, **BOLD)
-
-
 def _outline(given: Signal) -> tuple[Array, Array]:
+    """Times and pressures; of many samples the least and the greatest value in each of `_COLUMNS` parts."""
     count = len(given.pressure)
     if count <= 2 * _COLUMNS:
         return given.time, given.pressure

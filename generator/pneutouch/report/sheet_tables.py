@@ -9,7 +9,8 @@ from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
 from pneutouch.report.blocks import SheetBlock, SheetTable, Tile, section
 from pneutouch.report.certainty import interval
-from pneutouch.report.conditions import DASH, NOT_TESTED, gauge_range, gauge_volume
+from pneutouch.report.conditions import NOT_TESTED, gauge_range, gauge_volume
+from pneutouch.report.numbers import DASH
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.units import KPA, ML
 
@@ -30,7 +31,8 @@ _PERFORMANCE = (
 
 def key_figures(sheet: SheetData) -> list[Tile]:
     """The six tiles with the key figures on the first page, at the least driving pressure and the greatest rated."""
-    states, last = sheet.prediction.states, _highest_rated(sheet)
+    states = sheet.prediction.states
+    last = max((k for k, state in enumerate(states) if not _is_above(sheet, state)), default=0)
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
@@ -47,11 +49,6 @@ def key_figures(sheet: SheetData) -> list[Tile]:
         Tile("Dead volume", f"{dead_volume_mL:.2f}", "mL", behind),
         Tile("Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"),
     ]
-
-
-def _highest_rated(sheet: SheetData) -> int:
-    """Number of the last state whose driving pressure is within the rating; of the first if none is."""
-    return max((k for k, state in enumerate(sheet.prediction.states) if not _is_above(sheet, state)), default=0)
 
 
 def _is_above(sheet: SheetData, state: SensorState) -> bool:
