@@ -304,7 +304,15 @@ def _ages(days: set[float]) -> dict[float, float]:
 
 def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
     lined = RunGroup(key, tuple(curves), {}, ()).lined
-    each = tuple(run_figures(curve) if curve in lined else _without_line(curve, run_figures(curve)) for curve in curves)
+    # Of the figures of the line, a run outside `lined` has some only if it is a saturation run.
+    each = tuple(
+        {
+            key: value
+            for key, value in run_figures(curve).items()
+            if key not in _OF_LINE or curve in lined or curve.run.kind == "saturation"
+        }
+        for curve in curves
+    )
     pooled: dict[str, Estimate] = {}
     for figure in FIGURES:
         by_sensor: dict[str, list[float]] = {}
@@ -318,13 +326,6 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
             if np.isfinite(estimate.value):
                 pooled[figure.key] = widened(estimate, figure.reading)
     return RunGroup(key, tuple(curves), pooled, each)
-
-
-def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, float]:
-    """Figures of a run that is not among `RunGroup.lined`: without those of `_OF_LINE`, except for saturation runs."""
-    if curve.run.kind == "saturation":
-        return values
-    return {key: value for key, value in values.items() if key not in _OF_LINE}
 
 
 def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:

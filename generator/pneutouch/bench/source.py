@@ -75,17 +75,11 @@ def meaning_of(name: str, unit: str = "") -> HeaderMeaning:
     """Meaning of a header such as "Load [N]", "P_kPa" or "Kraft (N)"; ``unit`` is that of a row of units."""
     label, stated = (name, unit) if unit.strip() else _parted(name)
     known = unit_of(stated) if stated else None
-    if known is None and not unit.strip() and unit_of(name.strip()):
-        return HeaderMeaning("", *_both(name))
+    if known is None and not unit.strip() and (alone := unit_of(name)):
+        return HeaderMeaning("", *alone)
     words = [word.lower() for word in _SPLIT.findall(label)]
     odd = (bool(stated.strip("()[] -")) and known is None) or any(word in _OTHER_QUANTITIES.split() for word in words)
     return HeaderMeaning(_channel(label, words), *(known or ("", "")), odd)
-
-
-def _both(name: str) -> tuple[str, str]:
-    known = unit_of(name)
-    assert known is not None
-    return known
 
 
 def _parted(name: str) -> tuple[str, str]:

@@ -104,7 +104,11 @@ def air_path(scene: ResolvedDesign, layout: Layout) -> tuple[AirPiece, ...]:
     A channel crossed by a side port has the length of its axis to the crossing, and a radius that gives it its exact
     volume with the blind end included.
     """
-    port = [*_bore(layout), *_port_pieces(layout)]
+    port = _port_pieces(layout)
+    if layout.port_axis is not None and not layout.opening_radius:
+        # The bore of a side port from the wall of the channel to the port's hollow.
+        length = layout.port.hollow[-1][1] + layout.plate_radius - layout.channel_radius
+        port = [*_cylinder("port", length, math.pi * layout.port.passage**2 * length), *port]
     whole = channel_volume(layout) - layout.port.filled_volume()
     channel = whole - sum(piece.volume for piece in port)
     pieces = [*_gap(scene, layout), *_cylinder("channel", _channel_length(layout), channel), *port]
@@ -129,14 +133,6 @@ def _channel_length(layout: Layout) -> float:
     if layout.opening_radius:
         return layout.port.hollow[-1][1] + layout.plate_radius - layout.opening_radius
     return -layout.port_axis
-
-
-def _bore(layout: Layout) -> list[AirPiece]:
-    """The bore of a side port from the wall of the channel to the port's hollow."""
-    if layout.port_axis is None or layout.opening_radius:
-        return []
-    length = layout.port.hollow[-1][1] + layout.plate_radius - layout.channel_radius
-    return _cylinder("port", length, math.pi * layout.port.passage**2 * length)
 
 
 def _port_pieces(layout: Layout) -> list[AirPiece]:

@@ -117,13 +117,7 @@ def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
         if not chosen:
             raise InputError("no channels of numbers", file=path)
         if len(chosen) > 1:
-            problem = f"channels in {len(chosen)} groups: {', '.join(chosen)[:200]}"
-            raise InputError(
-                problem,
-                file=path,
-                key="sheet",
-                remedy=f"state one in the campaign file, or give `sheet`:\n[format]\nsheet = {shown(chosen[0])}",
-            )
+            raise _several(path, f"channels in {len(chosen)} groups", chosen)
         channels = groups[chosen[0]]
         names = tuple(channel.name for channel in channels)
         units = tuple(_unit(channel.properties) for channel in channels)
@@ -243,14 +237,13 @@ def xlsx_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
     if not tables:
         raise InputError("no sheet with a table of numbers", file=path, remedy=_CSV)
     if len(tables) > 1:
-        problem = f"tables of numbers in {len(tables)} sheets: {', '.join(tables)[:200]}"
-        raise InputError(
-            problem,
-            file=path,
-            key="sheet",
-            remedy=f"state one in the campaign file, or give `sheet`:\n[format]\nsheet = {shown(next(iter(tables)))}",
-        )
+        raise _several(path, f"tables of numbers in {len(tables)} sheets", list(tables))
     return next(iter(tables.values()))
+
+
+def _several(path: Path, problem: str, names: Sequence[str]) -> InputError:
+    remedy = f"state one in the campaign file, or give `sheet`:\n[format]\nsheet = {shown(names[0])}"
+    return InputError(f"{problem}: {', '.join(names)[:200]}", file=path, key="sheet", remedy=remedy)
 
 
 def xlsx_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:

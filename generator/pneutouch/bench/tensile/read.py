@@ -176,7 +176,11 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
     elif pair.load.kind == "stress" and not pair.load.stated:
         notes.append(f"column {pair.load.name} is taken as nominal stress (force over the undeformed cross-section)")
     _agrees(path, pairs, layout, pair, stretch, stress)
-    _check_sign(stress, file, f"column {pair.load.name}")
+    deep = float(stress[np.argmax(np.abs(stress))])
+    if deep < 0.0:
+        problem, key = f"the stress that is greatest in size is {deep:.4g} MPa", f"column {pair.load.name}"
+        remedy = "tension is positive, stretch and stress alike: turn the signs in the file"
+        raise InputError(problem, file=file, key=key, remedy=remedy)
     curve = _loading(TensionCurve(stretch, stress, file, tuple(notes), facts=facts))
     _plausible(curve)
     return curve
@@ -280,14 +284,6 @@ def _agrees(
                 remedy="engineering stress is force over the undeformed cross-section, true stress is that times the "
                 "stretch: are the names exchanged?",
             )
-
-
-def _check_sign(stress: Array, file: str, key: str) -> None:
-    """Raise InputError if the stress of greatest magnitude is negative."""
-    deep = float(stress[np.argmax(np.abs(stress))])
-    if deep < 0.0:
-        remedy = "tension is positive, stretch and stress alike: turn the signs in the file"
-        raise InputError(f"the stress that is greatest in size is {deep:.4g} MPa", file=file, key=key, remedy=remedy)
 
 
 def _loading(curve: TensionCurve) -> TensionCurve:

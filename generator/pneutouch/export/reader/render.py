@@ -78,12 +78,14 @@ def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = Non
     A sketch is among them if it can read the gauge: see `sketch_note`.
     """
     c = c_name(name)
+    # `reading` without its docstring: the module that is shipped is the one that is used here.
+    source = (HERE / "reading.py").read_text(encoding="utf-8").split('"""', 2)[2].lstrip("\n")
     table = pprint.pformat({key: record[key] for key in _PARTS}, width=118, compact=True)
     header = _rendered("reader.h.j2", record, c=c, **_header(record))
     files = {
         "reader.schema.json": SCHEMA.read_bytes(),
         f"{c}_reader.h": header,
-        f"{c}_reader.py": _rendered("reader.py.j2", record, c=c, source=_module(), table=table),
+        f"{c}_reader.py": _rendered("reader.py.j2", record, c=c, source=source, table=table),
     }
     known = None if gauge is None else arduino_gauge(gauge)
     if isinstance(known, SketchGauge):
@@ -184,9 +186,3 @@ def table_bytes(record: Mapping[str, Any]) -> int:
 def _half(intervals: int) -> int:
     """The first step of a binary search among ``intervals`` intervals: a power of two."""
     return 1 << max((intervals - 1).bit_length() - 1, 0)
-
-
-def _module() -> str:
-    """The source of `reading` without its docstring: the module that is shipped is the one that is used here."""
-    text = (HERE / "reading.py").read_text(encoding="utf-8")
-    return text.split('"""', 2)[2].lstrip("\n")

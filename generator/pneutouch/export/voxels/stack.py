@@ -5,7 +5,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -171,15 +171,19 @@ def read_stack(folder: Path) -> VoxelStack:
     resins = list(manifest["resins"])
     totals = np.zeros(len(resins) + 1, np.int64)
     middle = []
-    for number, labels in enumerate(_slices(folder, manifest)):
+    for number, stated in enumerate(manifest["slices"]):
+        path = folder / slice_name(manifest["prefix"], number)
+        content = _read(path)
+        labels = _labels(content, manifest, str(path))
         totals += np.bincount(labels.ravel(), minlength=len(totals))
         middle.append(labels[len(labels) // 2].copy())
-        stated = manifest["slices"][number]
-        path = folder / slice_name(manifest["prefix"], number)
-        if hashlib.sha256(_read(path)).hexdigest() != stated:
+        if hashlib.sha256(content).hexdigest() != stated:
             raise InputError(f"was changed after it was written: its SHA-256 is not that of {MANIFEST}", file=path)
     counts = {resin: int(totals[k + 1]) for k, resin in enumerate(resins)}
-    _check_counts(folder, manifest, counts)
+    for resin, count in counts.items():
+        stated = manifest["resins"][resin].get("voxels")
+        if stated != count:
+            raise InputError(f"{resin} has {count} voxels in the slices; {stated} are stated", file=folder / MANIFEST)
     return VoxelStack(folder, manifest, counts, np.array(middle))
 
 
@@ -252,12 +256,6 @@ def _check_names(folder: Path, manifest: dict[str, Any]) -> None:
         raise InputError(f"{layers} slices; the utility takes no fewer than {LEAST_SLICES}", file=folder)
 
 
-def _slices(folder: Path, manifest: dict[str, Any]) -> Iterator[Labels]:
-    for number in range(manifest["layers"]):
-        path = folder / slice_name(manifest["prefix"], number)
-        yield _labels(_read(path), manifest, str(path))
-
-
 def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
     """The content of a slice as labels. Raises InputError for another size, pitch or colour than the manifest's."""
     read = decode(content, where)
@@ -285,10 +283,3 @@ def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
 
 def _read(path: Path) -> bytes:
     return read_bytes(path, _MOST_BYTES, "PNG file")
-
-
-def _check_counts(folder: Path, manifest: dict[str, Any], counts: dict[str, int]) -> None:
-    for resin, count in counts.items():
-        stated = manifest["resins"][resin].get("voxels")
-        if stated != count:
-            raise InputError(f"{resin} has {count} voxels in the slices; {stated} are stated", file=folder / MANIFEST)

@@ -71,7 +71,8 @@ def tally(index: int, copy: int, inner: float, outer: float, width: float) -> Ta
     sectors, at = [(0.0, START * width)], START * width
     for number in (index, copy):
         at += _APART * width
-        for share in _strokes(number):
+        # The widths represent the number, fives first.
+        for share in [FIVE] * (number // 5) + [1.0] * (number % 5):
             sectors.append((at, at + share * width))
             at += (share + _BETWEEN) * width
         at -= _BETWEEN * width
@@ -93,12 +94,6 @@ def read(sectors: list[tuple[float, float]]) -> tuple[int, int]:
         end = at + width
     index, copy = counts
     return index, copy
-
-
-def _strokes(number: int) -> list[float]:
-    """Widths of the grooves that represent a number, fives first."""
-    fives, ones = divmod(number, 5)
-    return [FIVE] * fives + [1.0] * ones
 
 
 _STEP = 0.01
@@ -305,6 +300,8 @@ class Marker:
 
     def _tallied(self, assembly: Assembly, solid: Solid, body: Body, number: tuple[int, int]) -> tuple[Body, Mark]:
         """Body with a tally on the flange's top, or in its edge if a ring seals on the top."""
+        from manifold3d import CrossSection
+
         clamped = isinstance(assembly.scene.seat, ClampedFlange)
         layout, width = assembly.layout, self._depth
         inner, outer = self._band(assembly, solid)
@@ -321,7 +318,7 @@ class Marker:
         note = "engraved in the flange's edge: the ring seals on its top" if clamped else ""
         ends = (low, high) if clamped else (-_PAST, self._depth) if raised else (low, _PAST)
         depth = self._depth if raised or clamped else high - low
-        shape = _grooves(ring)
+        shape = rounded(CrossSection(ring.polygons()))
         mark = Mark("tally", "flange edge" if clamped else "flange top", raised, depth, ring.narrowest, 0.0, note)
         return _combined(body, (shape, *ends), raised), mark
 
@@ -336,12 +333,6 @@ class Marker:
 def shape_of(solid: Solid) -> Any:
     """Hashable key of a solid's geometry, whatever its resin: equal keys mean equal geometry."""
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
-
-
-def _grooves(ring: TallyRing) -> Any:
-    from manifold3d import CrossSection
-
-    return rounded(CrossSection(ring.polygons()))
 
 
 def _combined(body: Body, tool: Tool, raised: bool) -> Body:

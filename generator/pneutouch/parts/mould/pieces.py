@@ -50,6 +50,11 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None
     under_foot = window + SHOULDER + shape.clearance - (flange + foot) * deep
     seat = max(at_base, at_underside, under_foot)
     widest = seat + (flange + foot) * deep
+    margin, pitch = 0.0, 2 * widest + shape.wall
+    if shape.fastener == "screws":
+        margin = SCREW.margin(shape.hole_undersize)
+        # A screw stands between four cavities.
+        pitch = max(pitch, math.sqrt(2) * (widest + margin))
     columns = math.ceil(math.sqrt(shape.cavities))
     return MouldSize(
         shape=shape,
@@ -61,20 +66,12 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None
         neck=neck,
         mouth=mouth,
         window=window,
-        pitch=_pitch(widest, shape),
+        pitch=pitch,
         columns=columns,
         rows=math.ceil(shape.cavities / columns),
-        margin=SCREW.margin(shape.hole_undersize) if shape.fastener == "screws" else 0.0,
+        margin=margin,
         insert=insert,
     )
-
-
-def _pitch(widest: float, shape: MouldShape) -> float:
-    """Distance of neighbouring cavities: with a wall between two, and space for a screw between four."""
-    across = 2 * widest + shape.wall
-    if shape.fastener != "screws":
-        return across
-    return max(across, math.sqrt(2) * (widest + SCREW.margin(shape.hole_undersize)))
 
 
 ROLE = "mould"
@@ -180,23 +177,15 @@ def channels(size: MouldSize, past: float = 0.0) -> tuple[Turned, ...]:
 
     They extend ``past`` mm beyond the faces of the foot.
     """
-    radius, sprue, vent = size.channel_radius, _sprue_meridian(size, past), _vent_meridian(size, past)
+    radius, foot, flange = size.channel_radius, size.foot_low - past, size.low + past
+    # A 45 degree funnel, the neck, then up to the flange.
+    gate = _taper(size, 0.5 * size.shape.sprue_diameter, flange)
+    sprue = _cones([(size.mouth + past, foot), (size.neck, size.neck_height), gate])
+    vent = _cones([_taper(size, 0.5 * size.shape.vent_diameter, z) for z in (foot, flange)])
     return tuple(
         Turned(vent if k else sprue, Frame((radius * math.cos(angle), radius * math.sin(angle), 0.0)))
         for k, angle in enumerate(size.gate_angles)
     )
-
-
-def _vent_meridian(size: MouldSize, past: float) -> Meridian:
-    """Meridian of a vent about its own axis."""
-    radius = 0.5 * size.shape.vent_diameter
-    return _cones([_taper(size, radius, size.foot_low - past), _taper(size, radius, size.low + past)])
-
-
-def _sprue_meridian(size: MouldSize, past: float) -> Meridian:
-    """Meridian of the pour channel about its own axis: a 45 degree funnel, the neck, then up to the flange."""
-    gate = _taper(size, 0.5 * size.shape.sprue_diameter, size.low + past)
-    return _cones([(size.mouth + past, size.foot_low - past), (size.neck, size.neck_height), gate])
 
 
 def _taper(size: MouldSize, radius: float, z: float) -> Point:
