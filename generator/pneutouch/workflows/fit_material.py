@@ -45,6 +45,7 @@ def fit_report(fitted: FittedMaterial) -> MaterialFit:
     small = hyperelastic(law.form.name, law.constants, 0.49).mu
     fits = (law,) if choice is None else choice.fits
     refused = {} if choice is None else choice.refused
+    pulled = () if choice is None else zip(choice.curves, choice.each, strict=True)
     report = MaterialFit(
         material=fitted.options.name,
         file=str(fitted.path),
@@ -54,7 +55,9 @@ def fit_report(fitted: FittedMaterial) -> MaterialFit:
         shear_modulus_small_strain_MPa=small,
         shear_modulus_MPa=fitted.neo_hookean.constants[0],
         shear_modulus_uncertainty_MPa=fitted.neo_hookean.errors[0],
-        specimens=() if choice is None else _specimens(choice),
+        specimens=tuple(
+            PulledSpecimen(curve.file, int(curve.stretch.size), 100 * curve.slack, modulus) for curve, modulus in pulled
+        ),
         fits=tuple(TriedLaw(*_figures(fit), refused.get(k)) for k, fit in enumerate(fits)),
         profile=_profile(fitted),
         notes=tuple(_notes(fitted, small)),
@@ -65,13 +68,6 @@ def fit_report(fitted: FittedMaterial) -> MaterialFit:
 def _figures(fit: LawFit) -> tuple[str, str, tuple[float, ...], tuple[float, ...], float, float]:
     """Fields of a law's record."""
     return fit.form.name, fit.form.label, fit.constants, fit.errors, 100 * fit.misfit, 100 * fit.worst
-
-
-def _specimens(choice: LawChoice) -> tuple[PulledSpecimen, ...]:
-    return tuple(
-        PulledSpecimen(curve.file, int(curve.stretch.size), 100 * curve.slack, modulus)
-        for curve, modulus in zip(choice.curves, choice.each, strict=True)
-    )
 
 
 def _notes(fitted: FittedMaterial, small: float) -> list[str]:

@@ -253,18 +253,13 @@ def _specimen(
         pressure_kPa, curve = pressures_kPa[place], pressed_curves.curves[place]
         key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure_kPa), KINDS.index(run.kind), run.run]
         rng = np.random.default_rng([options.seed, *key])
-        if run.kind in PRESSED:
-            _note_end(run, subject, curve.reach, curve.ends, truth)
+        if run.kind in PRESSED and curve.ends is not None:
+            deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.shape.height, np.inf).depths)
+            if deepest > curve.reach * (1 + 1e-9):
+                stop = f"stops at {curve.reach:.2f} mm instead of {deepest:.2f} mm, before {curve.ends[0]}"
+                truth.notes.append(f"{run.label}: {stop}")
         samples = _columns(run, subject, pressed_curves, place, options, rng)
         yield run, encoded(samples, parquet=options.parquet)
-
-
-def _note_end(
-    run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: _Truth
-) -> None:
-    deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.shape.height, np.inf).depths)
-    if ends is not None and deepest > reach * (1 + 1e-9):
-        truth.notes.append(f"{run.label}: stops at {reach:.2f} mm instead of {deepest:.2f} mm, before {ends[0]}")
 
 
 def _columns(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from pneutouch.results.driving import (
     TaskSolution,
     UnknownLeak,
 )
+from pneutouch.results.record import extended
 from pneutouch.spec.read import Changes
 from pneutouch.spec.tasks import TASK_FIGURES, DrivingTask
 from pneutouch.units import KPA, ML
@@ -251,10 +252,9 @@ def _task(answer: TaskAnswer, rated: float) -> ReachedTask | MissedTask:
         reached=answer.reached,
         solutions=tuple(_solution(one, rated) for one in answer.solutions),
     )
-    known = {field.name: getattr(stated, field.name) for field in fields(stated)}
     if answer.gas is not None:
-        return ReachedTask(**known, gas=answer.gas)
-    return MissedTask(**known, possible_band=_band(answer.possible), offline=answer.changes)
+        return extended(ReachedTask, stated, gas=answer.gas)
+    return extended(MissedTask, stated, possible_band=_band(answer.possible), offline=answer.changes)
 
 
 def _solution(solution: DrivingSolution, rated: float) -> TaskSolution:

@@ -160,7 +160,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
 
 
 def _known(value: float) -> float | None:
-    return value if np.isfinite(value) else None
+    return float(value) if np.isfinite(value) else None
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
@@ -320,19 +320,15 @@ def graded(selection: GradedSelectionRun) -> GradedRecord:
 def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> GradeFigures:
     return GradeFigures(
         driving_pressures_kPa=tuple(p / KPA for p in selection.grade_target.pressures),
-        sensitivity_kPa_per_N=_each_known(trial.sensitivity),
-        difference_percent=_each_known((100 * trial.difference,))[0],
-        force_range_end_N=_each_known(trial.force),
+        sensitivity_kPa_per_N=tuple(map(_known, trial.sensitivity)),
+        difference_percent=_known(100 * trial.difference),
+        force_range_end_N=tuple(map(_known, trial.force)),
         range_ends_with=tuple(trial.ends),
         rated_pressure_kPa=None if trial.note else trial.rated / KPA,
         above_rated_pressure=max(selection.grade_target.pressures) > trial.rated,
         meets=selection.meets(trial),
         reason=trial.note or None,
     )
-
-
-def _each_known(values: tuple[float, ...]) -> tuple[float | None, ...]:
-    return tuple(float(value) if np.isfinite(value) else None for value in values)
 
 
 def graded_missed(selection: GradedSelectionRun) -> list[str]:

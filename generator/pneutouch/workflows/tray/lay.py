@@ -175,7 +175,11 @@ def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayO
     )
     parts = [replace(part, place=place) for part, place in zip(parts, places, strict=True)]
     for part in parts:
-        _check_closed(part)
+        # Vertices merge in float32, as readers of STL do.
+        opened = next((body for body in part.on_tray() if not body.welded().is_closed()), None)
+        if opened is not None:
+            problem = f"{opened.name} of {part.value.design}: its mesh does not close; please report the design"
+            raise ComputationError(problem)
     resins = dict.fromkeys(resin for piece in pieces for material in piece.materials for resin in material.base_resins)
     return TrayJob(mode, tuple(sorted(resins)), tuple(parts))
 
@@ -209,13 +213,4 @@ def _check_height(parts: list[TrayPart], printer: Printer, where: str) -> None:
                 f"{part.name} of {part.value.design} is {part.size[2]:.1f} mm tall",
                 file=where,
                 remedy=f"the {printer.title} builds {printer.envelope.z:g} mm",
-            )
-
-
-def _check_closed(part: TrayPart) -> None:
-    """Raise ComputationError if a mesh does not close once vertices merge in float32, as readers of STL do."""
-    for body in part.on_tray():
-        if not body.welded().is_closed():
-            raise ComputationError(
-                f"{body.name} of {part.value.design}: its mesh does not close; please report the design"
             )

@@ -14,7 +14,7 @@ from pneutouch.spec.files import design_inside, is_file
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import Changes, read_toml, validate
-from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Entry, EntryValue, Tray, parse_over
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, EntryValue, Tray, parse_over
 from pneutouch.spec.values import file_name, name_of
 
 
@@ -109,10 +109,7 @@ class ExpandedTray:
 def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
     """Load and draw every design of a tray, without prediction. Raises InputError if one is wrong or none is left."""
     library = library or Library.default()
-    values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
-    values = [
-        TrayVariant(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)
-    ]
+    values = _variants(order, library)
     profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
     printer = library.load("printers", profile, file=order.where, key="tray.profile")
     pieces: list[TrayPiece] = []
@@ -142,21 +139,19 @@ def letter(index: int) -> str:
     return text
 
 
-def _values(order: TrayOrder, entry: Entry, library: Library) -> list[TrayVariant]:
-    key = next(iter(entry.over), None)
-    variants = []
-    for value in entry.over[key] if key is not None else [None]:
-        settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
-        assembly = _assembly(order, entry, settings, library)
-        variants.append(TrayVariant(0, "", entry.design, key, value, entry.copies, assembly))
+def _variants(order: TrayOrder, library: Library) -> list[TrayVariant]:
+    variants: list[TrayVariant] = []
+    for entry in order.tray.entry:
+        key = next(iter(entry.over), None)
+        for value in entry.over[key] if key is not None else [None]:
+            settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
+            try:
+                scene = load_scene(order.design(entry.design), {**settings, **order.overrides}, library)
+                about = entry.design, key, value, entry.copies, assemble(scene)
+            except InputError as error:
+                raise InputError(f"entry {shown(entry.design)}: {error}", file=order.where) from None
+            variants.append(TrayVariant(len(variants) + 1, letter(len(variants) + 1), *about))
     return variants
-
-
-def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
-    try:
-        return assemble(load_scene(order.design(entry.design), {**settings, **order.overrides}, library))
-    except InputError as error:
-        raise InputError(f"entry {shown(entry.design)}: {error}", file=order.where) from None
 
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
