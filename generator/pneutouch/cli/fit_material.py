@@ -80,8 +80,7 @@ def fit_text(report: MaterialFit) -> str:
     ]
     lines = [
         f"{report.material}: {law.label}, within {law.misfit_percent:.2g} % up to a stretch of "
-        f"{report.largest_stretch:.3g}; shear modulus at small strain "
-        f"{report.shear_modulus_small_strain_MPa:.4g} MPa",
+        f"{report.largest_stretch:.3g}; shear modulus at small strain {report.shear_modulus_small_strain_MPa:.4g} MPa",
         f"neo-Hookean over the same stretches: {report.shear_modulus_MPa:.4g} MPa",
         *specimens,
     ]

@@ -210,9 +210,8 @@ def _viscous(viscous: Viscous) -> list[str]:
     speed = f"{quick[0].speed_mm_per_s:g} mm/s" if quick else ""
     return [
         f"held at {viscous.depth_mm:.2f} mm and {last.driving_pressure_kPa:g} kPa the pressure rise loses "
-        f"{_span(held)} from 1 s to "
-        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ("
-        f"{counted(len(viscous.sources), 'source')} of relaxation data)"
+        f"{_span(held)} from 1 s to 600 s; hysteresis at {speed} {_span(wide)} of full scale "
+        f"({counted(len(viscous.sources), 'source')} of relaxation data)"
     ]
 
 

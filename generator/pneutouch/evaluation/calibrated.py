@@ -83,10 +83,9 @@ def assumption(scene: ResolvedDesign) -> str:
         force, rise = (_span(factors) for factors in (response.force_factors, response.pressure_factors))
         corrected = f"; force times {force}, pressure rise times {rise}"
     return (
-        f"calibration {scene.design.calibration}: sensor {source.sensor}, {made}campaign {campaign}, "
-        f"modulus {calibration.value('shear_modulus_MPa'):.4g} MPa, wall "
-        f"{calibration.value('wall_thickness_mm'):.4g} mm{friction}{corrected}; the figures are of this specimen, not "
-        "of another print"
+        f"calibration {scene.design.calibration}: sensor {source.sensor}, {made}campaign {campaign}, modulus "
+        f"{calibration.value('shear_modulus_MPa'):.4g} MPa, wall {calibration.value('wall_thickness_mm'):.4g} "
+        f"mm{friction}{corrected}; the figures are of this specimen, not of another print"
     )
 
 

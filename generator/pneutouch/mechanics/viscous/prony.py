@@ -55,9 +55,8 @@ _MEMBRANE = "the membrane has no stiffness of its own to relax; take model atlas
 
 AGED = (
     "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its "
-    "level; above "
-    "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the "
-    "relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
+    "level; above Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is "
+    "applied to the relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
 )
 """Assumptions of the conversion from hardness to modulus, in words."""
 

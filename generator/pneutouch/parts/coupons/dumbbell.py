@@ -70,8 +70,7 @@ DUMBBELL = Coupon(
         "Print flat, all lengthwise along x, and one set more along y where the direction matters.",
         "Mark two lines 25 mm apart in the middle. Measure width and thickness at three places between them.",
         "Stretch in about ten steps to 20 % of the gauge length (5 mm), more if you like; at each wait 60 s and read "
-        "the "
-        "force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far "
+        "the force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far "
         "stiffer.",
         "Extension is that of the 25 mm between the marks, never of the grips.",
     ),

@@ -121,9 +121,8 @@ GAUGE = Coupon(
     steps=(
         "Print gauge and block as they lie in the file: x, y and z are the machine's.",
         "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, "
-        "pins, "
-        "holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out = "
-        "false.",
+        "pins, holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out "
+        "= false.",
         "Measure what came out, three times each. Soft walls and pins: microscope, or a caliper that just touches.",
         "The block is a staircase. Lying as printed, x is the width over each step counted from the top (5, 10, 15, "
         "20), z the height of each step over the base, y the length across. Three readings each.",

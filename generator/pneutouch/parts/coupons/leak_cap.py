@@ -71,9 +71,8 @@ LEAK_CAP = Coupon(
     nominals,
     steps=(
         "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, "
-        "or under "
-        "the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its connector: "
-        "print the connector without the membrane and glue the cap into the seat.",
+        "or under the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its "
+        "connector: print the connector without the membrane and glue the cap into the seat.",
         "Leak: pump to about 20 kPa, close the valve, wait 60 s, read the start; read the end after 600 s. Three runs. "
         "Hold cap and tube under water where it falls by more than 1 kPa.",
         "Push: vent, fill a syringe with the same volume of air each time, connect, push it home, wait 30 s, read. "

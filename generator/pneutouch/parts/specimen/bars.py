@@ -53,9 +53,8 @@ def box(layer: Bars, context: PatternContext, number: int) -> Box:
             number,
             "width_mm",
             layer.width_mm,
-            f"leaves {between:.4g} mm of matrix between bars at a pitch of {pitch:.4g} mm; "
-            f"the {context.printer.title} makes no wall of {context.matrix.label} thinner than "
-            f"{context.least_matrix():g} mm",
+            f"leaves {between:.4g} mm of matrix between bars at a pitch of {pitch:.4g} mm; the {context.printer.title} "
+            f"makes no wall of {context.matrix.label} thinner than {context.least_matrix():g} mm",
         )
     check_count(context, number, layer.period_key(), pitch, 30 * (context.block.high[0] / pitch))
     lefts = places(layer, context)

@@ -110,8 +110,7 @@ _CAST = "Cast as described above. Clean, dry, and wait 24 h after the cure; note
 _MIXES = (
     "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
     "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet "
-    "by "
-    "droplet from voxel slices of the same fractions."
+    "by droplet from voxel slices of the same fractions."
 )
 """Instruction for mixes on a machine that takes only catalogue materials."""
 
@@ -147,9 +146,8 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
     return [
         f"### {printer.title} (`{name}`)",
         f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode "
-        f"{mode.label}. **Choose the material of each object by hand**; pieces of one "
-        "shape "
-        "differ by their place on the tray alone, so bag and label them as they come off.",
+        f"{mode.label}. **Choose the material of each object by hand**; pieces of one shape differ by their place on "
+        "the tray alone, so bag and label them as they come off.",
         "\n".join([head, "|---|---|---|---|---|---|---|", *rows]),
         *mixes,
         *_casting([piece.item for piece in pieces if piece.item.mould is not None]),

@@ -77,9 +77,8 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     if printer.mode_for(pair.material(pair.grade(0.5 * pair.law.wall_top))) is None:
         remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
-            f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
-            f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
-            f"{remedy}",
+            f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix {soft} "
+            f"with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {remedy}",
             file=where,
             fields=["given.mix"],
         )

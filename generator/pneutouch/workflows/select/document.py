@@ -352,8 +352,7 @@ def graded_missed(selection: GradedSelectionRun) -> list[str]:
     if known_kPa_per_N.size:
         lines.append(
             f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to "
-            f"{known_kPa_per_N[:, 0].max():.2f} kPa/N at "
-            f"{grade_target.pressures[0] / KPA:g} kPa"
+            f"{known_kPa_per_N[:, 0].max():.2f} kPa/N at {grade_target.pressures[0] / KPA:g} kPa"
         )
     return lines
 

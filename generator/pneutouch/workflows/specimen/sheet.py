@@ -87,12 +87,9 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_
         f"# Print sheet: {markdown_escaped(document.title)}",
         f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
         "\n".join(_bodies(drawn)),
-        f"Machine: {scene.printer.title}, {scene.mode.label}. All bodies are **one "
-        "job**: "
-        f"load them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share "
-        "one frame, "
-        "in millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by "
-        "hand**.",
+        f"Machine: {scene.printer.title}, {scene.mode.label}. All bodies are **one job**: load them as one assembly "
+        f"(`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, in millimetres, all "
+        "coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
         *(f"Not written: `{name}`. {why}." for name, why in left_out.items()),
         "## Layers",
         f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
@@ -140,9 +137,8 @@ def _steps(drawn: SpecimenBodies) -> list[str]:
     under = "the frame" if scene.frame is not None else "the bottom"
     marked = " The cut corner of the frame is at x = y = 0, the start of the path." if scene.frame is not None else ""
     return [
-        f"Orient it as in the file: {under} on the tray, the scanned surface up. Set the surface finish to glossy: "
-        "no support "
-        f"then touches the scanned surface.{marked}",
+        f"Orient it as in the file: {under} on the tray, the scanned surface up. Set the surface finish to glossy: no "
+        f"support then touches the scanned surface.{marked}",
         f"Assign {', '.join(f'{body.material.label} to {body.name}' for body in drawn.bodies)}.",
         f"Remove support from the sides: {scene.printer.support}. The patterns are embedded: nothing has to come out "
         "from inside.",
@@ -181,8 +177,7 @@ def _head(page: Figure, drawn: SpecimenBodies) -> None:
     document, block = drawn.scene.specimen.document, drawn.scene.specimen.block
     text = (
         f"{document.title}, revision {document.revision}: {block.length_mm:g} x {block.width_mm:g} x "
-        f"{block.height_mm:g} mm, "
-        f"section along the path at y = {0.5 * block.width_mm:g} mm"
+        f"{block.height_mm:g} mm, section along the path at y = {0.5 * block.width_mm:g} mm"
     )
     page.suptitle(text, x=0.01, ha="left", fontsize=8.5, **BOLD)
 

@@ -77,8 +77,7 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
         "log-rectangular",
         counting(size),
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli "
-        "are given "
-        "their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken "
+        "are given their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken "
         "(docs/background/mixing.md)",
         False,
     )
