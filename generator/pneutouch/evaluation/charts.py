@@ -328,12 +328,9 @@ def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProble
 
 
 def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
-    candidates = []
-    for name, material in evaluation.resins.items():
-        runs = evaluation.scene.printer.mode_for(material) is not None
-        if runs and outside("atlas", in_resin(under_plate(evaluation.sensor), material)) is None:
-            paper = material_sensor(material)
-            candidates.append(
-                CandidateResin(name, material, paper.wall.shear_modulus, paper.wall.break_stretch or np.inf)
-            )
-    return tuple(candidates)
+    return tuple(
+        CandidateResin.of(name, material)
+        for name, material in evaluation.resins.items()
+        if evaluation.scene.printer.mode_for(material) is not None
+        and outside("atlas", in_resin(under_plate(evaluation.sensor), material)) is None
+    )

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
 from pneutouch.mechanics.atlas.table import Atlas
 from pneutouch.mechanics.corrected.designs import ContactFactors
+from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 
@@ -31,6 +32,12 @@ class CandidateResin:
     shear_modulus: float
     break_stretch: float
     grade: Grade | None = None
+
+    @classmethod
+    def of(cls, name: str, material: Material, grade: Grade | None = None) -> Self:
+        """Resin with the modulus and the stretch at break that a prediction takes of its material."""
+        wall = material_sensor(material).wall
+        return cls(name, material, wall.shear_modulus, wall.break_stretch or np.inf, grade)
 
 
 class ConnectorFit(NamedTuple):

@@ -1,14 +1,12 @@
 """Build of a design: print files of sensor and mould, prediction, datasheet, print sheet, manifest, in one folder."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 import numpy as np
 
 from pneutouch import __version__
-from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
@@ -275,8 +273,7 @@ def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:
 
 
 def _item(label: str, body: Body, x: float, y: float) -> TrayItem:
-    transform: Array = np.vstack([np.eye(3), [x, y, 0.0]])
-    return TrayItem(label, body.name, (replace(body, name=body.name),), transform)
+    return TrayItem(label, body.name, (body,), np.vstack([np.eye(3), [x, y, 0.0]]))
 
 
 def _mould_metadata(mould: MouldAssembly, plate: int, plates: int) -> dict[str, str]:

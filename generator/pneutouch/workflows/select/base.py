@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import read_given
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
@@ -61,11 +59,7 @@ class ResinPair:
     def resin(self, fraction: float) -> CandidateResin:
         """A constant mix as a candidate resin of the search."""
         grade = self.grade(fraction)
-        material = self.material(grade)
-        sensor = material_sensor(material)
-        return CandidateResin(
-            grade.label, material, sensor.wall.shear_modulus, sensor.wall.break_stretch or np.inf, grade
-        )
+        return CandidateResin.of(grade.label, self.material(grade), grade)
 
 
 def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
