@@ -57,12 +57,10 @@ def _of_keyword(name: str, value: Any) -> Any:
         raise InputError("nested too deep", key=name, remedy="give a value, or a list of values") from None
 
 
-def numbers_of(values: Any, name: str, *, alone: bool = False) -> tuple[float, ...]:
-    """Finite numbers given as the keyword ``name``; with ``alone`` a single one counts as a list. Raises InputError."""
+def numbers_of(values: Any, name: str) -> tuple[float, ...]:
+    """Finite numbers given as the keyword ``name``. Raises InputError."""
     given = _of_keyword(name, values)
     if not isinstance(given, list):
-        if alone and is_finite(given):
-            return (float(given),)
         remedy = f"write [{shown(given)}]" if is_finite(given) else None
         raise InputError("must be a list of numbers", key=name, value=given, remedy=remedy)
     return tuple(finite_numbers(given, name))

@@ -305,7 +305,7 @@ def greatest_share(grading: ArcGrading) -> float:
 
 def grade_colours(grading: ArcGrading, shape: DomeShape, points: Array) -> Array:
     """Colours (n, 3), 0 to 1, of points (n, 3) of the wall, mm in the design frame, by the stiff resin's share."""
-    light, dark = (np.array(list(bytes.fromhex(colour[1:]))) / 255 for colour in GRADE_COLOURS)
+    light, dark = map(_colour, GRADE_COLOURS)
     arc = shape.arc_share(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     share = np.interp(arc, grading.arc, grading.stiff_fraction)[:, None] / greatest_share(grading)
     return np.asarray(light + share * (dark - light))

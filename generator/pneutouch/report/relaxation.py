@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pneutouch.evaluation.sheet_data import AgeingData, SheetData
 from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
@@ -82,8 +83,6 @@ def loop_panel(sheet: SheetData) -> Panel:
 
 def _or_words(panel: Panel) -> Panel:
     """The panel; without a line, because no run could be followed, its title says so."""
-    from dataclasses import replace
-
     return panel if panel.lines else replace(panel, title="not followed: see the notes")
 
 

@@ -37,16 +37,12 @@ class ScannedState:
     scalogram: Scalogram
 
 
-def scalogram_chart(
-    states: Sequence[ScannedState], expected: Mapping[str, float], size: tuple[float, float] = SIZE
-) -> str:
-    """SVG of states side by side, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in
-    mm.
-
+def scalogram_chart(states: Sequence[ScannedState], expected: Mapping[str, float]) -> str:
+    """SVG of states side by side, colours on one scale; ``expected`` maps labels to frequencies in Hz.
     The part that the ends of the record affect (cone of influence) is hatched. Each scalogram is one PNG in the SVG.
     """
     top = max(_loudest(state.scalogram) for state in states)
-    with figure(*size) as drawn:
+    with figure(*SIZE) as drawn:
         drawn.set_dpi(_DPI)
         axes = drawn.subplots(2, len(states), squeeze=False, sharex="col", sharey="row", height_ratios=(1, 2.1))
         for (above, below), state in zip(axes.T, states, strict=True):

@@ -116,7 +116,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
         if not loops:
             continue
         if grading is not None and solid.role == "membrane":
-            shape = _shape(loops)
+            shape = loops_path(loops)
             _graded(ax, PathPatch(shape, transform=ax.transData), grading, assembly.layout.shape)
             ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
         else:
@@ -131,13 +131,13 @@ def draw_loops(ax: Axes, loops: Sequence[Array], role: str) -> None:
     """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch that bodies of this ``role`` have."""
     from matplotlib.patches import PathPatch
 
-    shape = _shape(loops)
+    shape = loops_path(loops)
     hatch = _HATCHES.get(role, "xx")
     ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
     ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
 
 
-def _shape(loops: Sequence[Array]) -> Path:
+def loops_path(loops: Sequence[Array]) -> Path:
     """One path made of closed loops, (n, 2) each."""
     from matplotlib.path import Path
 

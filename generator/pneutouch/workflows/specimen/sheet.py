@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pneutouch.body.solid import manifold_of
 from pneutouch.parts.specimen import Mesh, PatternGeometry
 from pneutouch.printability import Finding
+from pneutouch.report.section import loops_path
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, halo, svg
 from pneutouch.results.specimen import BlockRecord, PatternLayer, ScanPathRecord, SpecimenRecord
 from pneutouch.spec.specimen import Layer
@@ -213,13 +212,12 @@ def _section(ax: Axes, drawn: SpecimenBodies, under: float, aside: float) -> Non
 
 def _cut(ax: Axes, pattern: PatternGeometry, colour: str) -> None:
     from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
 
     polygons = section(pattern.mesh, 0.5 * (pattern.box.low[1] + pattern.box.high[1]) + _ASIDE)
     if not polygons:
         return
-    path = Path.make_compound_path(*(Path(np.vstack([line, line[:1]]), closed=True) for line in polygons))
-    ax.add_patch(PathPatch(path, facecolor=colour, edgecolor=INK, lw=0.4, hatch="////", zorder=2))
+    look = {"edgecolor": INK, "lw": 0.4, "hatch": "////", "zorder": 2}
+    ax.add_patch(PathPatch(loops_path(polygons), facecolor=colour, **look))
 
 
 def section(mesh: Mesh, y: float) -> list[Any]:

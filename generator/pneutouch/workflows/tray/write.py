@@ -8,8 +8,6 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pneutouch import __version__
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf import TRAY_RECIPE, TrayItem, threemf_tray
@@ -18,6 +16,7 @@ from pneutouch.output.recipe import scene_parts
 from pneutouch.parts.lettering.mark import EXPLAINED, shape_of
 from pneutouch.printability import check, refuse
 from pneutouch.printability.subject import PrintItem, PrintSubject
+from pneutouch.report.section import loops_path
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
 from pneutouch.results.printing import Finding, TrayFinding
 from pneutouch.results.tray import LabelRow, TrayJobRecord, TrayRecord
@@ -74,11 +73,9 @@ def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
 def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     """Draw one part: its resin's colour, its outline, and its label as large as fits."""
     from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
 
     axes, shift = part.transform[:2, :2], part.transform[3, :2]
-    moved = [np.vstack([line, line[:1]]) @ axes + shift for line in polygons]
-    path = Path.make_compound_path(*(Path(line, closed=True) for line in moved))
+    path = loops_path([line @ axes + shift for line in polygons])
     ax.add_patch(PathPatch(path, facecolor=part.solids[0].material.colour, alpha=0.55, edgecolor="none"))
     ax.add_patch(PathPatch(path, fill=False, edgecolor=INK, linewidth=0.7))
     across, along = part.footprint
