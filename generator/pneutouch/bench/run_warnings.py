@@ -119,7 +119,7 @@ def _of_one(
     contact = indentations.contacts[number - 1]
     if contact is not None and not contact.fitted:
         light = "too light for an onset by itself; its onset is the median of the others"
-        warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
+        warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True, "note"))
     if held and end - begin < SHORT * usual:
         short = f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s"
         warnings.append(SuspectInterval(begin, end, short, True))

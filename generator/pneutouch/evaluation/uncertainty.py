@@ -54,7 +54,7 @@ _LAW_NOTE = (
 )
 
 _SOFT_NOTE = (
-    "the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "
+    "the ambient pressure is {:.3g} times the modulus, more than the atlas answers for: the figures are the "
     "solid's, their relative uncertainty is by the derivatives of the atlas's tables, whose states hold without gas"
 )
 
@@ -198,8 +198,7 @@ def uncertainties(
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
     if unknown(sensor, model) is not None:
-        gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
-        notes_of_wall += (_SOFT_NOTE.format(gas=gas),)
+        notes_of_wall += (_SOFT_NOTE.format(sensor.gas.ambient_pressure / sensor.wall.shear_modulus),)
     from pneutouch.mechanics.atlas.figures import FIGURES
     from pneutouch.mechanics.uncertainty.document import document, gas_text, text
 
