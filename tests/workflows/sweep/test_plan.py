@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.tray import spread
-from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
+from pneutouch.workflows.sweep import journal, plan_of_file, plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.work import study
 from tests.refusals import refused
@@ -263,3 +263,11 @@ def test_a_sweep_that_names_no_model_takes_the_one_of_its_contact(over, settings
     assert study(plan, Library.default()).plan.model == model
     named = plan_of_flags("paper-dome", over, settings, model="membrane")
     assert study(named, Library.default()).plan.model == "membrane"
+
+
+def test_too_many_states_are_refused_before_any_work(library, tmp_path, monkeypatch):
+    monkeypatch.setattr(journal, "MOST_STATES", 7)
+    plan = plan_of_flags("paper-dome", ["membrane.wall_thickness_mm=1.2,1.5"], model="membrane")
+    with pytest.raises(InputError, match="2 points at 4 driving pressures; it must be at most 7 states"):
+        sweep(plan, tmp_path / "x.nc", library=library)
+    assert not list(tmp_path.iterdir())

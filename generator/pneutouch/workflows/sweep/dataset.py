@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 PRESSURE = "driving_pressure_kPa"
 """Name of the dimension of driving pressures, which holds all that any point has."""
 
-MOST_BYTES = 2**30
-"""Largest size of a dataset, which is in memory as a whole: some million points."""
+MOST_BYTES = 2**32
+"""Largest size of a dataset, which is in memory as a whole: more than `journal.MOST_STATES` states take."""
 
 _CONTENT_HASH = "content_hash"
 

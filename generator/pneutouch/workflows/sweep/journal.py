@@ -29,17 +29,24 @@ from pneutouch.workflows.sweep.work import Record, SweepStudy
 _CHECKSUM_DIGITS = 16
 
 
+MOST_STATES = 4_000_000
+"""Greatest number of states of a sweep: they take some 5 GB of memory."""
+
 MOST_LINE = 2**26
 """Bytes of a line that are read at once: ten times those of a chunk with fifty driving pressures a point."""
 
 
 class SweepColumns:
-    """Values of a sweep's points in arrays by the variable's name, filled in as points are done."""
+    """Values of a sweep's points in arrays by the variable's name, filled in as points are done. Raises InputError for
+    too many states."""
 
     def __init__(self, study: SweepStudy) -> None:
         self.study = study
         count = study.plan.count
         self.pressures_kPa = sorted({p for i in range(count) for p in study.point(i).driving_pressures_kPa})
+        if count * len(self.pressures_kPa) > MOST_STATES:
+            problem = f"{count} points at {len(self.pressures_kPa)} driving pressures"
+            raise InputError(problem, file=study.plan.where, remedy=f"it must be at most {MOST_STATES} states")
         self._done = np.zeros(count, dtype=bool)
         self.states, self.points = _columns(STATE, count * len(self.pressures_kPa)), _columns(POINT, count)
 
