@@ -1,14 +1,15 @@
-"""Jobs of the page on one design: to open a file that the user gave, and to build a design to all its files."""
+"""Jobs of the page on one design: to open a file that the user gave, to build it, and to map it over two fields."""
 
 import json
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pneutouch import __version__
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.library import is_specimen
+from pneutouch.catalogue.library import CachedLibrary, is_specimen
 from pneutouch.errors import InputError, PneutouchError, one_line
 from pneutouch.evaluation.evaluate import PredictionOptions, evaluate
 from pneutouch.formats import KEY, check_format
@@ -16,12 +17,21 @@ from pneutouch.mechanics.models.choice import model_options
 from pneutouch.output.files import MANIFEST
 from pneutouch.output.recipe import scene_kinds
 from pneutouch.results.record import plain
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.read import read_toml
-from pneutouch.spec.values import name_of, plain_name
+from pneutouch.spec.read import read_toml, toml_value
+from pneutouch.spec.tray import spread
+from pneutouch.spec.values import is_finite, name_of, plain_name
+from pneutouch.stopping import temporary_folder
 from pneutouch.studio.candidate import state_of
-from pneutouch.studio.form import Question
+from pneutouch.studio.form import PAGE, Question
+from pneutouch.studio.job import Report
+from pneutouch.wording import rounded
 from pneutouch.workflows.build import STEPS, build, calibrated_name, described
+from pneutouch.workflows.sweep.grid import PRESSURES, Settings, SweepPlan
+from pneutouch.workflows.sweep.variables import ENDS, INTERVAL, MAPPED, reason_words
+from pneutouch.workflows.sweep.work import chunks, compute, study, unpack
 
 
 def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Library) -> Question:
@@ -66,11 +76,8 @@ class OpenedDesign:
     notes: list[str]
 
 
-def open_file(
-    arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
-) -> OpenedDesign:
-    """Read the only file of ``files``; return its design as a page state, with notes on parts that the page cannot
-    show.
+def open_file(arguments: Mapping[str, Any], folder: Path, report: Report) -> OpenedDesign:
+    """Read the only file of ``files``; return its design as a page state, with notes on parts that the page lacks.
 
     Raises InputError that names file, key and value.
     """
@@ -205,9 +212,7 @@ class BuiltDesign:
     findings: list[Mapping[str, Any]]
 
 
-def build_design(
-    arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
-) -> BuiltDesign:
+def build_design(arguments: Mapping[str, Any], folder: Path, report: Report) -> BuiltDesign:
     """Build the design of ``question`` into ``folder``. Raises InputError at the field, and RuleBrokenError."""
     question, library = Question.of(arguments.get("question")), Library.default()
     source = question.source(arguments["bases"], library)
@@ -229,3 +234,86 @@ def build_design(
         sheet=f"{made.name}/{SHEET}",
         findings=[plain(finding.stated) for finding in evaluation.findings],
     )
+
+
+GRID = 60
+"""Number of values of each field of a map."""
+
+_MAP_DIGITS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class MapAxis:
+    """A field of a map, ``table.key``, and its ascending values."""
+
+    field: str
+    values: list[float]
+
+    @classmethod
+    def of(cls, letter: str, given: Mapping[str, str | None]) -> "MapAxis":
+        """The axis x or y of a request. Raises InputError at its field, ``low`` or ``high``."""
+        field = given.get(f"{letter}.field") or ""
+        low, high = (_within(field, f"{letter}.{end}", given) for end in ("low", "high"))
+        if not low < high:
+            raise InputError(f"must be above {low:g}, where the range begins", key=f"{letter}.high", value=high)
+        return cls(field, spread(PAGE, field, low, high, GRID))
+
+
+def _within(field: str, name: str, given: Mapping[str, str | None]) -> float:
+    """The number ``name`` of a request. Raises InputError if it is none that ``field`` of a design can have."""
+    table, _, key = field.partition(".")
+    model = table_of(DesignFile, table)
+    known = next((each for each in declarations(model) if each.key == key), None) if model else None
+    if known is None or known.low is None or known.high is None:
+        raise InputError("no field of numbers of a design", key=f"{name[0]}.field", value=field)
+    value = toml_value(given.get(name) or "")
+    if not is_finite(value) or not known.low <= value <= known.high:
+        raise InputError(f"must be {known.right}", key=name, value=value)
+    return float(value)
+
+
+@dataclass(frozen=True, slots=True)
+class DesignMap:
+    """The figures that sweeps map, by name, with their labels: (x, y) each, None where one is missing;
+    ``reasons`` (x, y): why, in words, "" if that is not known."""
+
+    x: MapAxis
+    y: MapAxis
+    labels: Mapping[str, str]
+    figures: Mapping[str, list[list[float | None]]]
+    reasons: list[list[str]]
+
+
+def map_design(arguments: Mapping[str, Any], folder: Path, report: Report) -> DesignMap:
+    """Predict the design of ``question`` over two of its fields, as a sweep by the atlas does.
+
+    ``values`` holds the texts of ``x.field``, ``x.low``, ``x.high``, the same of y, and ``map.pressure_kPa``.
+    Raises InputError at these names.
+    """
+    question, library = Question.of(arguments.get("question")), CachedLibrary(Library.default().folders)
+    given = Question.of({"base": question.base, "values": arguments.get("values")}).values
+    x, y = MapAxis.of("x", given), MapAxis.of("y", given)
+    if x.field == y.field:
+        raise InputError("both axes have this field", key="y.field", value=y.field, remedy="choose another one here")
+    source, at_kPa = question.source(arguments["bases"], library), _within(PRESSURES, "map.pressure_kPa", given)
+    points: list[Settings] = [{PRESSURES: at_kPa, x.field: a, y.field: b} for a in x.values for b in y.values]
+    for point in points:
+        point[PRESSURES] = [point[PRESSURES]]
+    plan = SweepPlan("map", PAGE, source, {}, points=tuple(points), model="atlas")
+    resolved, known = study(plan, library, tried=False), list[dict[str, Any]]()
+    with temporary_folder(within=folder) as files:
+        unpack(resolved.files, files)
+        for chunk in chunks(resolved, list(range(plan.count))):
+            report(len(known), plan.count, "designs")
+            known += [record["values"] | record["states"][0] for record in compute(chunk, files)]
+    for each in known:
+        low, high = map(each.get, ENDS)
+        each[INTERVAL] = 50.0 * math.log(high / low) if low else None
+    figures = {name: _grid([each.get(key) for each in known]) for name, (_, key) in MAPPED.items()}
+    labels = {name: label for name, (label, _) in MAPPED.items()}
+    return DesignMap(x, y, labels, figures, _grid([reason_words(each["message"]) for each in known]))
+
+
+def _grid(column: list[Any]) -> list[list[Any]]:
+    """Values of all designs by x and y, to the digits of the page."""
+    return [rounded(column[k : k + GRID], _MAP_DIGITS) for k in range(0, len(column), GRID)]

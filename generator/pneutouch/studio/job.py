@@ -18,6 +18,7 @@ from pneutouch.studio.guard import PageResponse, reported
 KINDS: dict[str, str] = {
     "build": "design_jobs:build_design",
     "open": "design_jobs:open_file",
+    "map": "design_jobs:map_design",
     "select": "search:search",
     "recognise": "measuring:recognised",
     "characterize": "measuring:characterize",

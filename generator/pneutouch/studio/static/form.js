@@ -85,6 +85,7 @@ export class Form extends Fields {
     // A printed membrane has no mould; what is changed there all the same stays in sight.
     const cast = this.castings.includes(this.fields.get("print.profile").input.value);
     this.folded.get("mould").hidden = !cast && !Object.keys(state.values).some((name) => name.startsWith("mould."));
+    document.dispatchEvent(new Event("form"));
   }
 
   /** What stands in place of values that are left out. */

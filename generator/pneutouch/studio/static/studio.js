@@ -15,8 +15,7 @@ import { CHANGED, Versions } from "./versions.js";
 import { View } from "./view.js";
 
 /** Milliseconds after the last move at which the atlas completes its answer, and at which the solid begins. */
-const PAUSED = 80;
-const SETTLED = 250;
+const [PAUSED, SETTLED] = [80, 250];
 const KEPT = 500;
 const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, outdated: false };
 const parts = {};
@@ -24,13 +23,14 @@ const owed = new Owed();
 const files = new Versions();
 
 /** By the id of an area, the module that fills it when it is first shown. */
-const MODULES = { target: "./target.js", files: "./files.js", measure: "./measure.js" };
+const MODULES = { target: "./target.js", map: "./map.js", files: "./files.js", measure: "./measure.js" };
 
-/** What the areas are given: the design as it is now, a function that opens another one, and the line of messages. */
+/** What the areas are given: the design as it is now and its form, a function that opens another one, and the line of messages. */
 const desk = {
   state: () => files.of(page.state),
   answer: () => current(),
-  go: (state) => go(state),
+  go: (state, settled) => go(state, settled),
+  field: (name) => parts.form.fields.get(name),
   report: (words, busy = false) => report(words, busy),
   show: (name) => parts.areas.show(name),
   words: (base) => parts.words.get(base) ?? base,

@@ -33,6 +33,7 @@ class Target {
     const alert = element("div", { role: "alert" }, this.problems);
     root.replaceChildren(this.form(), element("div", { tabindex: -1 }, this.status, this.under, alert, this.results));
     this.show();
+    page.target = () => this.wanted();
     // A design that was saved meanwhile may be a base as well.
     document.addEventListener("design", () => this.known(page.state().base));
     this.report("Give a sensitivity, a force range or a stiffness, then find designs. What is left out is free.");
@@ -78,6 +79,12 @@ class Target {
       if (field.kind === "choice") input.options[0].textContent = LEFT_OUT[name];
       else input.placeholder = LEFT_OUT[name] ?? field.default ?? (field.optional ? "free" : "");
     }
+  }
+
+  /** Numbers of the target as it is typed now, for a map; 0 or none where one is left out. */
+  wanted() {
+    const number = (key) => Number(this.values[`target.${key}`] ?? this.fields.fields.get(`target.${key}`).field.default);
+    return { sensitivity: number("sensitivity_kPa_per_N"), tolerance: number("tolerance_percent"), force: number("force_range_N") };
   }
 
   known(base) {

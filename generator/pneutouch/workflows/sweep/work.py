@@ -64,16 +64,17 @@ class SweepStudy:
         return SweepPoint(index, settings, tuple(sorted(float(p) for p in given)))
 
 
-def study(plan: SweepPlan, library: Library) -> SweepStudy:
+def study(plan: SweepPlan, library: Library, *, tried: bool = True) -> SweepStudy:
     """Resolve and check a plan. Raises InputError that names file, key and value.
 
-    A value that is impossible at every point is an error. An impossible combination, such as a thick wall on a small
-    radius in one corner of a grid, is a result: the dataset records it as refused.
+    A value that is impossible at every point is an error, if points are ``tried``. An impossible combination, such as
+    a thick wall on a small radius in one corner of a grid, is a result: the dataset records it as refused.
     """
     library = CachedLibrary(library.folders)
     source = DesignSource.of(plan.design, library)
     base = source.changed({})
-    _check(plan, library)
+    if tried:
+        _check(plan, library)
     plan = replace(plan, model=_model(plan, base))
     files, things = {f"designs/{source.name}.toml": toml_text(source.content)}, {}
     names = _names(plan, base)
