@@ -43,7 +43,7 @@ class DesignMap {
     this.stop = element("button", { type: "button", onclick: () => this.cancel() }, "Cancel");
     this.under = element("div", { class: "under", hidden: true }, this.progress, this.stop);
     this.problems = element("ul", { class: "problems" });
-    this.old = element("div", { class: "old", role: "status", hidden: true }, element("span", {}, "This map is of an older design."), element("button", { type: "button", onclick: () => this.compute() }, "Compute again"));
+    this.old = element("div", { class: "old", role: "status", hidden: true }, element("span", {}, "This map is of an older design."), element("button", { type: "button", onclick: (event) => this.compute(event) }, "Compute again"));
     this.tiles = element("div", { class: "tiles", role: "group", "aria-label": "Figure that is drawn" });
     this.place = element("p", { class: "place" });
     this.key = element("div", { class: "key" });
@@ -59,10 +59,6 @@ class DesignMap {
   }
 
   form() {
-    const submit = (event) => {
-      event.preventDefault();
-      this.compute();
-    };
     this.begin = element("button", { type: "submit", class: "first" }, "Compute map");
     const rows = this.fields.rows(this.fields.groups[0].fields.map((field) => field.name));
     for (const letter of Object.keys(AXES)) {
@@ -71,7 +67,7 @@ class DesignMap {
     const range = (...ends) => element("div", { class: "range" }, ...ends);
     return element(
       "form",
-      { "aria-label": "Map", autocomplete: "off", novalidate: true, onsubmit: submit },
+      { "aria-label": "Map", autocomplete: "off", novalidate: true, onsubmit: (event) => this.compute(event) },
       ...[0, 3].map((k) => element("fieldset", { "aria-label": k ? "Up" : "Across" }, rows[k], range(rows[k + 1], rows[k + 2]))),
       rows[6],
       // A field keeps the focus while the button is pressed: its help would go, and the button move from under the pointer.
@@ -165,7 +161,8 @@ class DesignMap {
     this.report(`${done} of ${total} ${what}.`, true);
   }
 
-  async compute() {
+  async compute(event) {
+    event.preventDefault();
     if (this.job) return;
     this.problem([]);
     this.progress.removeAttribute("value");
