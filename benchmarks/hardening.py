@@ -25,6 +25,7 @@ from pneutouch.tables import binary_tables
 from pneutouch.tables.read import MOST_NUMBERS
 from pneutouch.tables.text import LONGEST_LINE
 from pneutouch.workflows.sweep.dataset import MOST_BYTES as MOST_DATASET
+from pneutouch.workflows.sweep.journal import MOST_LINE
 
 READ = DOCS.parents[1] / "tests" / "mutants" / "read.toml"
 
@@ -61,7 +62,8 @@ def bounds() -> list[tuple[str, str]]:
         ),
         ("voxel slice", f"100 MB, {MOST_PIXELS / mb:g} million pixels"),
         ("manifests and figures in output folders (JSON)", "100 MB"),
-        ("dataset and journal of a sweep", f"{MOST_DATASET // mib} MiB"),
+        ("dataset of a sweep", f"{MOST_DATASET // mib} MiB"),
+        ("journal of a sweep", f"any size, in lines of at most {MOST_LINE // mib} MiB"),
         ("exported design, question of the page (JSON)", f"{LARGEST_BODY // 1024} KiB"),
         ("file given to the page", f"{LARGEST_FILE // mib} MiB, 256 MiB in all"),
     ]

@@ -9,6 +9,7 @@ import pytest
 
 import pneutouch as pt
 from pneutouch.cli.driving import schedule_text
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.tasks import parse_task
 from pneutouch.workflows.driving import driving_record, driving_schedule
 
@@ -32,6 +33,31 @@ def test_only_a_sensor_that_a_fit_covers_is_to_be_calibrated(library):
     assert record.is_fitted and "calibrate it (pneutouch calibrate)" in schedule_text(record)
     other = schedule_text(replace(record, is_fitted=False))
     assert "no calibration covers such a sensor" in other and "pneutouch calibrate" not in other
+
+
+SOFT = {"membrane.material": "DragonSkin10", "membrane.inner_radius_mm": 7.0}
+
+
+@pytest.mark.parametrize(
+    ("design", "changes", "model", "what"),
+    [("paper-dome", {}, "atlas", "sensitivity=3.5"), ("cast-dome", SOFT, "solid", "force_range=30")],
+)
+def test_a_design_changed_as_said_has_the_figure_that_is_said(design, changes, model, what, library):
+    schedule = driving_schedule(design, [parse_task(what)], changes, library=library, model=model)
+    (task,) = driving_record(schedule).tasks
+    for one in task.offline:
+        changed = changes | {one.what: one.after}
+        states = evaluate(design, changed, model=model, library=library).prediction.states
+        figures = [state.figures for state in states if state.figures]
+        found = [f.sensitivity if what.startswith("sens") else f.force_range[1] for f in figures]
+        assert min(abs(value / one.predicted - 1) for value in found) < 0.02, one.what
+
+
+def test_a_calibrated_sensor_is_not_to_be_calibrated_nor_built_anew(library):
+    record = driving_record(
+        driving_schedule("paper-dome", [parse_task("sensitivity=2.1")], library=library, model="atlas")
+    )
+    assert "(pneutouch" not in schedule_text(replace(record, is_calibrated=True))
 
 
 def test_a_figure_out_of_reach_ends_with_code_1_and_its_range(command):

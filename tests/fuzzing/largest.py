@@ -48,8 +48,8 @@ CASES: dict[str, list[Case]] = {
     "3MF": [Case("threemf", files.model, "triangles", files.MODEL)],
     "voxel slice": [Case("slice", files.pixels, "pixels of one colour", files.MOST_PIXELS)],
     "manifests and figures (JSON)": [Case("leak", files.empty_lists, "empty lists")],
-    "dataset of a sweep": [Case("dataset", files.dataset, "a fifth of the largest")],
-    "journal of a sweep": [Case("journal", files.journal, "a sixteenth of the largest")],
+    "dataset of a sweep": [Case("dataset", files.dataset, "a twentieth of the largest")],
+    "journal of a sweep": [Case("journal", files.journal, "64 MB; any size is read in lines")],
     "exported design (JSON)": [Case("exported", files.exported, "values")],
     "question of the page (JSON)": [Case("question", files.question, "values")],
 }

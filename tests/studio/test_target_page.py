@@ -14,7 +14,12 @@ from tests.studio.served import solved
 
 pytestmark = pytest.mark.slow
 
-_FIELDS = {"Sensitivity kPa/N": "1.9", "Driving pressure kPa": "12", "Force range N": "15", "Max dome diameter mm": "25"}
+_FIELDS = {
+    "Sensitivity kPa/N": "1.9",
+    "Driving pressure kPa": "12",
+    "Force range N": "15",
+    "Max dome diameter mm": "25",
+}
 _ASKED = ["select", "--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]
 _HERE = "document.body.dataset.area === 'target' && document.querySelector('#area-target[data-ready]')"
 _IDLE = "!document.querySelector('#area-target .submit .first').disabled"

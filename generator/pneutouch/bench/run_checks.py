@@ -41,7 +41,7 @@ _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
 _HOLD_FAR = 50.0
-_SPEEDS = 0.01, 200.0
+_SPEEDS = 0.01, 50.0
 """Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
 _WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
 _WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"

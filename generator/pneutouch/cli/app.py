@@ -61,7 +61,7 @@ CalibrationOption = Annotated[
     typer.Option(
         "--calibration",
         metavar="NAME",
-        help="Calibration of the sensor in hand, as DESIGN@NAME; none: without the design's.",
+        help="Calibration of the sensor in hand; none: without the design's.",
         callback=_keep_calibration,
         autocompletion=names("calibrations"),
     ),

@@ -168,8 +168,10 @@ def measured_text(measured: "MeasuredCampaign", named: Callable[[str], str | Non
     if told:
         lines.append(f"\nkind of run, by the record: {listed(told, _NAMED)}")
     lines += _warnings(measured.runs)
-    asked = [(entry.file, PneutouchError(entry.question).message(named)) for entry in measured.questions]
-    lines += [f"\nquestion: {file}: {words} The run is used." for file, words in asked]
+    asked = [
+        (entry.file, PneutouchError(entry.question).message(named).removesuffix(".")) for entry in measured.questions
+    ]
+    lines += [f"\nquestion: {file}: {words}{'' if words[-1] == '?' else '.'} The run is used." for file, words in asked]
     return "\n".join(lines)
 
 

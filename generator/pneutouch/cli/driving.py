@@ -169,7 +169,9 @@ def _notes(task: ReachedTask, record: DrivingRecord) -> list[str]:
         lines.append(f"{required}: also at {also} kPa; the lowest is taken")
     if first.band is not None and (first.band.open_low or first.band.open_high):
         advice = "calibrate it (pneutouch calibrate), then repeat with --calibration"
-        if not record.is_fitted:
+        if record.is_calibrated:
+            advice = "calibrate it with more runs, at driving pressures near this one"
+        elif not record.is_fitted:
             advice = "measure it (pneutouch characterize): no calibration covers such a sensor"
         lines.append(
             f"{required}: its uncertainty exceeds what pressure can correct: the sensor in hand may not reach it; "

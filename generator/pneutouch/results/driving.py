@@ -172,6 +172,8 @@ class DrivingRecord:
     """Limit of the driving pressure that is met first."""
     is_fitted: bool
     """True if a calibration can cover the sensor."""
+    is_calibrated: bool
+    """True if the sensor is predicted with a calibration."""
     dead_volume_mL: float
     """Gas volume behind the cavity."""
     ambient_pressure_kPa: float

@@ -70,7 +70,9 @@ def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[Offl
     _, entry = min(curves.budgets, key=lambda known: abs(known[0] - nearest.driving_pressure))
     elasticities = (entry.elasticities or {}).get(BUDGET_KEYS.get(figure, figure), {})
     changes = []
-    for name, (what, unit) in _FIELDS.items():
+    # The wall of a calibrated sensor is built.
+    free = _FIELDS if curves.evaluation.scene.calibration is None else ("dead_volume",)
+    for name, (what, unit) in ((name, _FIELDS[name]) for name in free):
         slope, before = elasticities.get(name, 0.0), _input(curves, name)
         if abs(slope) * np.log(_FARTHEST) < abs(np.log(value / best)) or before <= 0.0:
             continue
@@ -89,7 +91,11 @@ def _input(curves: ReachCurves, name: str) -> float:
 
 def _with(curves: ReachCurves, name: str, value: float, pressure: float, figure: str) -> float | None:
     """The figure with input ``name`` at ``value``, at a driving pressure in MPa; None if the model gives none."""
-    sensor = curves.evaluation.sensor.replace(**{name: value})
+    sensor = curves.evaluation.sensor
+    more = {"depth": sensor.protocol.depth * value / sensor.dome.inner_radius} if name == "inner_radius" else {}
+    # A depth that the design does not state follows from its radius.
+    stated = curves.evaluation.scene.design.indentation.depth_mm is not None
+    sensor = sensor.replace(**{name: value, **({} if stated else more)})
     try:
         states = predict("changed", sensor, [pressure], model=curves.model).states
     except PneutouchError:
@@ -211,6 +217,7 @@ def driving_record(schedule: DrivingSchedule) -> DrivingRecord:
         highest_kPa=float(curves.pressures[-1]) / KPA,
         limit=curves.evaluation.prediction.limits.binding,
         is_fitted=rating.is_fitted,
+        is_calibrated=schedule.curves.evaluation.scene.calibration is not None,
         dead_volume_mL=curves.gas.dead_volume / ML,
         ambient_pressure_kPa=curves.gas.ambient / KPA,
         temperature_C=REFERENCE_TEMPERATURE - 273.15,
