@@ -21,6 +21,7 @@ from pneutouch.workflows.select.document import (
     relief_lines,
     remarks,
     search_notes,
+    without,
 )
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
@@ -130,8 +131,7 @@ def processes_lines(selection: ProcessSelection, typed: Typed = in_file) -> list
             nearest = run.answer.nearest
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
             enough = [] if process not in selection.reliefs else relief_lines(run, selection.reliefs[process], typed)
-            lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough)]
-            lines += [f"{process}: left out: {name}: {reason}" for name, reason in run.left_out.items()]
+            lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough, *without(run))]
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.parts import assemble
 from pneutouch.results.record import SENSITIVITY_KEY, extended
 from pneutouch.results.selection import (
@@ -262,13 +263,22 @@ def relief_lines(selection: SelectionRun, relief: Relief, typed: Typed) -> list[
 
 
 def remarks(selection: SelectionRun) -> list[str]:
-    """Lines on the mount for a finger, the gauges considered, designs that the check rejects, and resins left out."""
+    """Lines on the mount for a finger, the gauges considered, designs that the check rejects, resins left out, and
+    the walls searched if no design was found."""
     return [
         *mount_note(selection.target, selection.base),
         *(f"gauge {'chosen' if one.chosen else 'out'}: {one.gauge}: {one.why}" for one in selection.gauges),
         *(_rejected_words(one) for one in selection.rejected),
-        *(f"left out: {name}: {why}" for name, why in selection.left_out.items()),
+        *without(selection),
     ]
+
+
+def without(selection: SelectionRun) -> list[str]:
+    """Lines on the resins left out, and on the walls searched if no design was found."""
+    box = shipped().recipe
+    walls = f"searched: walls of {box.thinnest:g} to {box.thickest:g} R0, which the atlas covers"
+    lines = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+    return lines if selection.answer.designs else [*lines, walls]
 
 
 def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
