@@ -16,12 +16,12 @@ from pneutouch.workflows.select.document import (
     graded_missed,
     headline,
     in_file,
+    left_out_lines,
     missed_text,
     rated_warning,
     relief_lines,
     remarks,
     search_notes,
-    without,
 )
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
@@ -131,7 +131,7 @@ def processes_lines(selection: ProcessSelection, typed: Typed = in_file) -> list
             nearest = run.answer.nearest
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
             enough = [] if process not in selection.reliefs else relief_lines(run, selection.reliefs[process], typed)
-            lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough, *without(run))]
+            lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough, *left_out_lines(run))]
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
 
 

@@ -269,11 +269,11 @@ def remarks(selection: SelectionRun) -> list[str]:
         *mount_note(selection.target, selection.base),
         *(f"gauge {'chosen' if one.chosen else 'out'}: {one.gauge}: {one.why}" for one in selection.gauges),
         *(_rejected_words(one) for one in selection.rejected),
-        *without(selection),
+        *left_out_lines(selection),
     ]
 
 
-def without(selection: SelectionRun) -> list[str]:
+def left_out_lines(selection: SelectionRun) -> list[str]:
     """Lines on the resins left out, and on the walls searched if no design was found."""
     box = shipped().recipe
     walls = f"searched: walls of {box.thinnest:g} to {box.thickest:g} R0, which the atlas covers"
