@@ -187,14 +187,14 @@ def test_a_stack_whose_pairs_are_none_is_refused(key, value, tmp_path):
         read_stack(tmp_path)
 
 
-def test_a_dataset_of_more_than_four_gibibytes_is_not_read(tmp_path):
+def test_a_dataset_of_more_than_a_tebibyte_is_not_read(tmp_path):
     from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
 
     path = tmp_path / "a.nc"
     with path.open("wb") as file:
-        file.truncate(2**32 + 1)
+        file.truncate(2**40 + 1)
     for read in (stored_dataset, stored_fingerprint):
-        with pytest.raises(InputError, match=f"larger than 4096 MiB: {2**32 + 1} bytes; no dataset is"):
+        with pytest.raises(InputError, match=f"larger than 1048576 MiB: {2**40 + 1} bytes; no dataset is"):
             read(path)
 
 
@@ -205,7 +205,7 @@ def test_a_journal_without_lines_is_not_read_as_a_whole(tmp_path):
     path, found = tmp_path / "journal", []
     with path.open("wb") as file:
         file.truncate(3 * MOST_LINE)
-    Journal(path, "a" * 64).read(found.extend)
+    Journal(path, "a" * 64).read(lambda records, place: found.extend(records))
     assert found == [] and path.read_bytes() == b""
 
 

@@ -117,7 +117,7 @@ def read_journal(path: Path) -> object:
     lines = path.read_bytes().split(b"\n")
     path.write_bytes(b"".join(_checksum(line) + b" " + line + b"\n" for line in lines))
     counts: list[int] = []
-    Journal(path, "ab").read(lambda records: counts.append(len(records)))
+    Journal(path, "ab").read(lambda records, _: counts.append(len(records)))
     return counts
 
 

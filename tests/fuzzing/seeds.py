@@ -231,7 +231,7 @@ def _threemf() -> bytes:
 def _datasets() -> list[bytes]:
     import xarray
 
-    from pneutouch.workflows.sweep.dataset import _CONTENT_HASH, _content_hash
+    from pneutouch.workflows.sweep.dataset import _CONTENT_HASH, _UNHASHED, seal
 
     content = xarray.Dataset(
         {
@@ -242,8 +242,12 @@ def _datasets() -> list[bytes]:
         {"input_hash": "ab", "title": "a sweep"},
     )
     content.attrs["format"] = format_of("dataset")
-    content.attrs[_CONTENT_HASH] = _content_hash(content)
-    return [bytes(content.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))]
+    content.attrs[_CONTENT_HASH] = _UNHASHED.decode()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.nc"
+        content.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+        seal(path)
+        return [path.read_bytes()]
 
 
 def _slice() -> bytes:

@@ -208,6 +208,7 @@ def sweep(
     clamp: str = "base",
     workers: int = 1,
     fresh: bool = False,
+    yes: bool = False,
     **fields: Any,
 ) -> xarray.Dataset:
     """Predict every combination of values of a design's fields, given as lists or as ``{"from", "to", "count"}``.
@@ -234,7 +235,7 @@ def sweep(
             raise InputError("no field has several values", remedy="give a list, such as wall_thickness_mm=[1, 1.2]")
         plan = plan_of_grid(source_of(design), grid, fixed, WHERE, model=model, closure=closure, clamp=clamp)
         path = folder / "sweep.nc" if out is None else Path(out)
-        run(plan, path, ComputeResources(workers), fresh=fresh)
+        run(plan, path, ComputeResources(workers), fresh=fresh, yes=yes)
         return xarray.load_dataset(path, engine="scipy")
 
 

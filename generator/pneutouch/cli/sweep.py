@@ -55,6 +55,7 @@ def sweep(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Forget progress and replace another sweep's dataset.")
     ] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Compute also more than ten million points.")] = False,
     charts: Annotated[
         Path | None, typer.Option("--charts", metavar="DIR", help="Folder for contour maps over two fields.")
     ] = None,
@@ -72,7 +73,8 @@ def sweep(
         )
         target = _free_place(plan, out, charts)
         with bar("computing points") as progress:
-            done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
+            machines = ComputeResources(workers, scheduler)
+            done = run(plan, target, machines, fresh=fresh, yes=yes, progress=progress)
         with bar("drawing the sensitivity"):
             rows, written = write_companions(done.path, _MOST)
             maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)

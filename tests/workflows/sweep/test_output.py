@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.errors import InputError
-from pneutouch.workflows.sweep import sweep
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.workflows.sweep import dataset, plan_of_file, sweep
+from pneutouch.workflows.sweep.dataset import stored_dataset, table_rows
 from tests.refusals import refused
 from tests.workflows.sweep.conftest import ALONE, ended, held, names, resumed, six, small
 
@@ -51,6 +52,42 @@ def test_a_stopped_replacement_goes_on_and_the_old_dataset_stays_until_then(sing
     assert out.read_bytes() == content
     assert sweep(six(), out, ALONE, library=library).computed == 4
     assert out.read_bytes() != content
+
+
+@pytest.mark.parametrize("states", [1, 7, 40])
+def test_a_dataset_written_and_read_in_parts_is_the_whole_one(states, library, tmp_path, monkeypatch):
+    """Texts of other lengths in each part, names along the first field, points with other driving pressures."""
+    walls, resins = "membrane.wall_thickness_mm=0.3,1.2,1.5", "membrane.material=TangoPlus,FLX9950"
+    grids = [small([resins, walls, "membrane.inner_radius_mm=3,9"]), small([walls, resins])]
+    content = 'design = "paper-dome"\nmodel = "membrane"\n'
+    for wall, pressures in ((0.4, [5]), (1.5, [0, 22]), (1.2, [5, 22])):
+        content += f"[[point]]\nmembrane.wall_thickness_mm = {wall}\n"
+        content += f"pneumatics.driving_pressures_kPa = {pressures}\n"
+    (tmp_path / "list.toml").write_text(content)
+    for k, plan in enumerate([*grids, plan_of_file(tmp_path / "list.toml")]):
+        whole, parts = tmp_path / f"whole-{k}.nc", tmp_path / f"parts-{k}.nc"
+        monkeypatch.setattr(dataset, "_STATES", 10**6)
+        sweep(plan, whole, ALONE, library=library)
+        rows = list(table_rows(stored_dataset(whole)))
+        assert len(rows) == sum(sweep(plan, whole, ALONE, library=library).states.values())
+        monkeypatch.setattr(dataset, "_STATES", states)
+        sweep(plan, parts, ALONE, library=library)
+        assert parts.read_bytes() == whole.read_bytes()
+        assert list(table_rows(stored_dataset(parts))) == rows
+
+
+def test_a_journal_that_changes_while_a_dataset_is_written_is_no_result(single, library, tmp_path):
+    out = tmp_path / "sweep.nc"
+
+    def damage(done, total):
+        if done == total:
+            path = tmp_path / "sweep.nc.parts" / "journal"
+            path.write_bytes(path.read_bytes().replace(b'"ok"', b'"no"', 1))
+
+    with pytest.raises(ComputationError, match="journal"):
+        sweep(six(), out, ALONE, library=library, progress=damage)
+    assert names(tmp_path) == ["sweep.nc.parts"]
+    assert sweep(six(), out, ALONE, library=library).computed == 1
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.tray import spread
-from pneutouch.workflows.sweep import journal, plan_of_file, plan_of_flags, sweep, work
+from pneutouch.workflows.sweep import execute, plan_of_file, plan_of_flags, plan_of_grid, sweep, work
 from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.work import study
 from tests.refusals import refused
@@ -86,8 +86,8 @@ BAD = {
         ["membrane.wall_thickness_mm[1] = 1", "once only"],
     ),
     "too many": (
-        f'{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n"membrane.inner_radius_mm" = {{from = 8, to = 9, count = 110}}',
-        ["1100000 points", "at most 1000000"],
+        f'{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n"membrane.inner_radius_mm" = {{from = 8, to = 9, count = 1001}}',
+        ["10010000 points", "`yes` computes them all the same"],
     ),
     "bad point": (f"{BASE}[[point]]\n{WALL} = 1\n[[point]]\n{WALL} = 60", ["point[1]", "from 0.05 to 50 mm"]),
     "pressures out of bounds": (
@@ -265,9 +265,17 @@ def test_a_sweep_that_names_no_model_takes_the_one_of_its_contact(over, settings
     assert study(named, Library.default()).plan.model == "membrane"
 
 
-def test_too_many_states_are_refused_before_any_work(library, tmp_path, monkeypatch):
-    monkeypatch.setattr(journal, "MOST_STATES", 7)
+def test_more_points_than_a_file_can_hold_are_refused_with_yes_too(library, tmp_path):
+    grid = {f"membrane.{name}": {"from": 1, "to": 2, "count": 10000} for name in ("wall_thickness_mm", "inner_radius_mm")}
+    with pytest.raises(InputError) as caught:
+        sweep(plan_of_grid("paper-dome", grid | {"pneumatics.dead_volume_mL": list(range(22))}), tmp_path / "x.nc")
+    assert str(2**31 - 1) in str(caught.value.remedy) and not list(tmp_path.iterdir())
+
+
+def test_a_sweep_of_more_points_than_usual_is_computed_where_asked_for(library, tmp_path, monkeypatch):
+    monkeypatch.setattr(execute, "MAX_POINTS", 1)
     plan = plan_of_flags("paper-dome", ["membrane.wall_thickness_mm=1.2,1.5"], model="membrane")
     with pytest.raises(InputError) as caught:
         sweep(plan, tmp_path / "x.nc", library=library)
-    assert "7" in str(caught.value.remedy) and not list(tmp_path.iterdir())
+    assert "yes" in str(caught.value.remedy) and not list(tmp_path.iterdir())
+    assert sweep(plan, tmp_path / "x.nc", library=library, yes=True).computed == 2

@@ -141,8 +141,10 @@ def records(count):
 
 
 def read(journal):
-    found = []
-    journal.read(found.extend)
+    """Records by point, which the journal also gives again from the places that it names."""
+    found, places = [], []
+    journal.read(lambda records, place: (found.extend(records), places.append(place)))
+    assert list(journal.at(places)) == found
     return {record["point"]: record for record in found}
 
 

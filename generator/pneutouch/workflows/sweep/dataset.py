@@ -1,4 +1,4 @@
-"""Conversion of records to one xarray dataset, and of the dataset to the bytes of a netCDF file.
+"""The netCDF file of a sweep: written from its journal part by part, read as an xarray dataset, drawn.
 
 netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every tool reads it, and it holds no clock.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -25,9 +26,9 @@ from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_pieces
 from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
-from pneutouch.workflows.sweep.journal import SweepColumns, check_output
+from pneutouch.workflows.sweep.journal import FinishedPoints, Journal, check_output
 from pneutouch.workflows.sweep.variables import ENDS, INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
-from pneutouch.workflows.sweep.work import SweepStudy
+from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 if TYPE_CHECKING:
     import xarray
@@ -38,62 +39,111 @@ if TYPE_CHECKING:
 PRESSURE = "driving_pressure_kPa"
 """Name of the dimension of driving pressures, which holds all that any point has."""
 
-MOST_BYTES = 2**32
-"""Largest size of a dataset, which is in memory as a whole: more than `journal.MOST_STATES` states take."""
+MOST_BYTES = 2**40
+"""Largest size of a dataset: that of some thousand million states."""
 
-_CONTENT_HASH = "content_hash"
+_STATES = 20_000
+"""Least number of states that are written or read at once, if there are as many."""
+
+_CONTENT_HASH, _UNHASHED = "content_hash", b"0" * 64
+_HEAD = 2**20
+"""Bytes at the head of a file among which its hash is."""
 
 
-def dataset(columns: SweepColumns) -> xarray.Dataset:
-    """Dataset of a finished sweep. Its dimensions are those of the grid, or ``point``, and the driving pressure.
-    Missing numbers are NaN, missing texts are empty."""
+def write_dataset(points: FinishedPoints, journal: Journal, path: Path) -> None:
+    """Write the dataset of a finished sweep as a netCDF file, part by part. Its dimensions are those of the grid, or
+    ``point``, and the driving pressure. Missing numbers are NaN, missing texts are empty. Raises OSError."""
     import xarray
 
-    plan = columns.study.plan
-    every, dims = (*plan.shape, len(columns.pressures_kPa)), (*plan.dimensions, PRESSURE)
-    content: dict[str, Any] = {v.name: _variable(v, columns.states[v.name], every, dims) for v in STATE}
-    content |= {v.name: _variable(v, columns.points[v.name], plan.shape, plan.dimensions) for v in POINT}
-    coordinates = {
-        PRESSURE: (
-            PRESSURE,
-            np.array(columns.pressures_kPa),
-            {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES},
-        ),
-        **_coordinates(columns.study),
-    }
-    whole = xarray.Dataset(content, coordinates, _attributes(columns.study, content))
-    whole.attrs[_CONTENT_HASH] = _content_hash(whole)
-    return whole
-
-
-def _content_hash(content: xarray.Dataset) -> str:
-    """SHA-256 of names, dimensions, values and attributes, by which a damaged dataset is recognised."""
-    digest = hashlib.sha256()
-    for name in sorted(map(str, content.variables)):
-        column = content[name]
-        values = column.values
-        head = [
-            name,
-            list(map(str, column.dims)),
-            list(values.shape),
-            sorted((k, str(v)) for k, v in column.attrs.items()),
-        ]
-        digest.update(json.dumps(head).encode())
-        if values.dtype.kind not in "OU":
-            digest.update(values.astype("<f8").tobytes())
+    plan, records = points.study.plan, points.records(journal)
+    first, length, inner = plan.dimensions[0], plan.shape[0], math.prod(plan.shape[1:])
+    frame = xarray.Dataset(None, _coordinates(points.study), _attributes(points))
+    step = max(1, _STATES // (inner * len(points.study.pressures_kPa)))
+    for start in range(0, length, step):
+        rows = slice(start, min(start + step, length))
+        size = rows.stop - start
+        part = frame.isel({first: rows}).assign(_columns(points, islice(records, size * inner), size))
+        if start == 0:
+            # Along the first dimension a file can grow: what follows is appended, as records of the same layout.
+            part.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT", unlimited_dims=[first])
+            layout = _layout(path)
             continue
-        # Row by row: all words of a large sweep as one text take more memory than its dataset.
-        for k, part in enumerate(values):
-            digest.update((", " if k else "[").encode() + json.dumps(np.asarray(part).tolist()).encode())
-        digest.update(b"]")
-    attributes = sorted((str(k), str(v)) for k, v in content.attrs.items() if k != _CONTENT_HASH)
-    digest.update(json.dumps(attributes).encode())
-    return digest.hexdigest()
+        with path.open("ab") as file:
+            file.write(_packed(part, size, layout))
+    with path.open("r+b") as file:
+        file.seek(4)
+        file.write(length.to_bytes(4, "big"))
+    seal(path)
 
 
-def netcdf(content: xarray.Dataset, path: Path) -> None:
-    """Write the dataset as a netCDF file. Raises OSError."""
-    content.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+def _columns(points: FinishedPoints, records: Iterable[Record], size: int) -> dict[str, xarray.Variable]:
+    """Values of as many points as the rows of a part have, by the name of their variable."""
+    study, widths = points.study, points.widths
+    shape, dims, pressures_kPa = (size, *study.plan.shape[1:]), study.plan.dimensions, study.pressures_kPa
+    count = math.prod(shape)
+    states, values = _empty(STATE, count * len(pressures_kPa), widths), _empty(POINT, count, widths)
+    for k, record in enumerate(records):
+        _fill(values, k, record["values"])
+        requested_kPa = study.point(record["point"]).driving_pressures_kPa
+        for pressure_kPa, state in zip(requested_kPa, record["states"], strict=True):
+            _fill(states, k * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
+    every = (STATE, states, (*shape, len(pressures_kPa)), (*dims, PRESSURE)), (POINT, values, shape, dims)
+    return {
+        v.name: _variable(v, columns[v.name].reshape(form), names)
+        for variables, columns, form, names in every
+        for v in variables
+    }
+
+
+def _empty(variables: Sequence[SweepVariable], count: int, widths: dict[str, int]) -> dict[str, np.ndarray]:
+    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
+    return {v.name: np.zeros(count, f"S{widths[v.name]}") if v.text else np.full(count, np.nan) for v in variables}
+
+
+def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if value is not None and name in columns:
+            columns[name][row] = value.encode() if isinstance(value, str) else value
+
+
+def _layout(path: Path) -> np.dtype[np.void]:
+    """Type of the record that every value of the first dimension adds to a file."""
+    from scipy.io import netcdf_file
+
+    with netcdf_file(path, mmap=False) as file:
+        held: list[Any] = []
+        for name, variable in file.variables.items():
+            if variable.isrec:
+                held.append((name, variable.data.dtype, variable.data.shape[1:]))
+                held.append((f" {name}", f"V{-variable.data[0].nbytes % 4}"))
+    return np.dtype(held)
+
+
+def _packed(part: xarray.Dataset, size: int, layout: np.dtype[np.void]) -> bytes:
+    """A part as ``size`` records, one after the other."""
+    records = np.zeros(size, layout)
+    for name in set(layout.names or ()).intersection(map(str, part.variables)):
+        values = part[name].values
+        records[name] = values[..., None].view("S1") if values.dtype.kind == "S" else values
+    return records.tobytes()
+
+
+def seal(path: Path) -> None:
+    """Write the hash of a dataset's bytes into the file, by which a damaged one is recognised."""
+    with path.open("r+b") as file:
+        place = file.read(_HEAD).index(_UNHASHED)
+        total = _content_hash(path, _UNHASHED)
+        file.seek(place)
+        file.write(total)
+
+
+def _content_hash(path: Path, stated: bytes) -> bytes:
+    """SHA-256 of a file with zeros in place of the hash that it states."""
+    with path.open("rb") as file:
+        total = hashlib.sha256(file.read(_HEAD).replace(stated, _UNHASHED, 1))
+        while block := file.read(_HEAD):
+            total.update(block)
+    return total.hexdigest().encode()
 
 
 def stored_fingerprint(path: Path) -> str:
@@ -109,15 +159,18 @@ def stored_dataset(path: Path) -> xarray.Dataset:
 
 
 def _loaded(path: Path, damaged: InputError, *, hashed: bool = False) -> xarray.Dataset:
-    """Dataset of a file; raises ``damaged`` if it is none, or if it is to be ``hashed`` and has another content."""
+    """Dataset of a file, its values still there; raises ``damaged`` if it is none, or if it is to be ``hashed`` and has
+    another content."""
     import xarray
 
-    _check_size(path)
+    size = check_plain(path, "dataset")
+    if size > MOST_BYTES:
+        raise oversized(path, size, MOST_BYTES, "dataset")
     try:
-        with xarray.open_dataset(path, engine="scipy") as opened:
-            content = opened.load()
+        content = xarray.open_dataset(path, engine="scipy")
         check_format("dataset", content.attrs, path)
-        if "input_hash" in content.attrs and (not hashed or content.attrs[_CONTENT_HASH] == _content_hash(content)):
+        stated = str(content.attrs.get(_CONTENT_HASH)).encode()
+        if "input_hash" in content.attrs and (not hashed or stated == _content_hash(path, stated)):
             return content
     except InputError:
         raise
@@ -127,15 +180,11 @@ def _loaded(path: Path, damaged: InputError, *, hashed: bool = False) -> xarray.
     raise damaged
 
 
-def _check_size(path: Path) -> None:
-    size = check_plain(path, "dataset")
-    if size > MOST_BYTES:
-        raise oversized(path, size, MOST_BYTES, "dataset")
+def _variable(variable: SweepVariable, values: Any, dims: tuple[str, ...]) -> xarray.Variable:
+    import xarray
 
-
-def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
-    names = ({} if variable.text else {"units": variable.units}) | {"long_name": variable.long_name}
-    return dims, values.reshape(shape), names
+    names = {"_Encoding": "utf-8"} if variable.text else {"units": variable.units}
+    return xarray.Variable(dims, values, names | {"long_name": variable.long_name})
 
 
 Coordinate = tuple[str, Any, dict[str, str]]
@@ -145,11 +194,11 @@ Coordinate = tuple[str, Any, dict[str, str]]
 def _coordinates(study: SweepStudy) -> dict[str, Coordinate]:
     """Values of the varied fields: in a grid along a dimension of their own, in a list along ``point``."""
     plan = study.plan
+    names = {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES}
+    coordinates: dict[str, Coordinate] = {PRESSURE: (PRESSURE, np.array(study.pressures_kPa), names)}
     if plan.axes:
-        return {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
-    coordinates: dict[str, Coordinate] = {
-        "point": ("point", np.arange(plan.count, dtype=np.int32), {"long_name": "number in the list"})
-    }
+        return coordinates | {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
+    coordinates |= {"point": ("point", np.arange(plan.count, dtype=np.int32), {"long_name": "number in the list"})}
     for key in plan.varied:
         if key != PRESSURES:
             table, field = key.split(".")
@@ -167,15 +216,15 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     declared = declaration(table, field)
     names = {"long_name": declared.help, "key": key}
     if declared.registry is not None or takes_words(key):
-        return np.array([str(value).lower() if isinstance(value, bool) else value for value in values], object), names
+        texts = [(str(value).lower() if isinstance(value, bool) else value).encode() for value in values]
+        return np.array(texts), {**names, "_Encoding": "utf-8"}
     if table.model_fields[field].annotation is int:
         return np.array(values, np.int32), {"units": declared.unit or "1", **names}
     return np.array(values, float), {"units": declared.unit or "1", **names}
 
 
-def _attributes(study: SweepStudy, content: dict[str, Any]) -> dict[str, str]:
-    plan = study.plan
-    bases = sorted({text for text in content["error_sensitivity_basis"][1].ravel() if text})
+def _attributes(points: FinishedPoints) -> dict[str, str]:
+    study, plan = points.study, points.study.plan
     design = study.base.model_dump(mode="json")
     return {
         KEY: format_of("dataset"),
@@ -187,26 +236,30 @@ def _attributes(study: SweepStudy, content: dict[str, Any]) -> dict[str, str]:
         "base_design_content": json.dumps(design, sort_keys=True, ensure_ascii=False),
         "set_for_all_points": json.dumps(plan.settings, sort_keys=True, ensure_ascii=False),
         "input_hash": study.fingerprint,
-        "error_estimate": "\n".join(bases) or "no point was predicted",
+        "error_estimate": "\n".join(sorted(filter(None, points.bases))) or "no point was predicted",
+        _CONTENT_HASH: _UNHASHED.decode(),
     }
+
+
+def parts_of(content: xarray.Dataset) -> Iterator[xarray.Dataset]:
+    """Parts of a dataset along its first dimension, of some `_STATES` states, loaded one after the other."""
+    dims = content["status"].dims
+    length = content.sizes[dims[0]]
+    step = max(1, _STATES * length // max(content["status"].size, 1))
+    for start in range(0, length, step):
+        yield content.isel({dims[0]: slice(start, start + step)}).load()
 
 
 def table_rows(content: xarray.Dataset) -> Iterator[dict[str, Any]]:
     """A row for each state, in the dataset's order: swept fields, driving pressure, figures; None if missing."""
     dims = list(content["status"].dims)
-    names = [v.name for v in (*STATE, *POINT)]
     fields = [str(name) for name in content.coords if name not in (*dims, PRESSURE)]
     swept = [*(str(dim) for dim in dims if dim != PRESSURE), *fields]
-    arrays = {}
-    for name in (*swept, PRESSURE, *names):
-        own = content[name].dims
-        values = content[name].transpose(*(dim for dim in dims if dim in own)).values
-        whole = values.reshape([content.sizes[dim] if dim in own else 1 for dim in dims])
-        arrays[name] = np.broadcast_to(whole, [content.sizes[dim] for dim in dims])
-    for k in range(content.sizes[dims[0]]):
-        columns = [values[k].ravel().tolist() for values in arrays.values()]
-        for row in zip(*columns, strict=True):
-            found = {name: None if x != x else x for name, x in zip(arrays, row, strict=True)}
+    names = [*swept, PRESSURE, *(v.name for v in (*STATE, *POINT))]
+    for part in parts_of(content):
+        whole = (part[name].broadcast_like(part["status"]).transpose(*dims).values.ravel().tolist() for name in names)
+        for row in zip(*whole, strict=True):
+            found = {name: None if x != x else x for name, x in zip(names, row, strict=True)}
             if found["status"]:
                 yield found
 

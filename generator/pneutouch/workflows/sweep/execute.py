@@ -6,14 +6,15 @@ from collections import Counter
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError, joined
 from pneutouch.stopping import uninterrupted
-from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
-from pneutouch.workflows.sweep.grid import SweepPlan
-from pneutouch.workflows.sweep.journal import Journal, SweepColumns, WorkFolder
+from pneutouch.workflows.sweep.dataset import parts_of, stored_dataset, stored_fingerprint, write_dataset
+from pneutouch.workflows.sweep.grid import MAX_POINTS, SweepPlan
+from pneutouch.workflows.sweep.journal import FinishedPoints, Journal, WorkFolder
 from pneutouch.workflows.sweep.work import CHUNK_POINTS, Record, SweepStudy, chunks, study, unpack
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 
@@ -47,36 +48,40 @@ def sweep(
     machines: ComputeResources = ComputeResources(),
     *,
     fresh: bool = False,
+    yes: bool = False,
     progress: Progress = lambda done, total: None,
     library: Library | None = None,
 ) -> SweepResult:
     """Compute every point of a plan and write the dataset to ``out``; return a summary.
 
     Progress is kept in a folder, ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, continues from
-    there and ends with the same bytes. ``fresh`` discards progress and replaces a dataset that is there.
+    there and ends with the same bytes. ``fresh`` discards progress and replaces a dataset that is there; without
+    ``yes`` more than `MAX_POINTS` points are refused.
 
     Raises InputError before any work starts, ComputationError if it stops half way, with its progress kept. A
     KeyboardInterrupt is passed on with a note on the progress that is kept.
     """
     if machines.workers is not None and machines.workers < 1:
         raise InputError("must be at least 1", key="workers", value=machines.workers)
+    if plan.count > MAX_POINTS and not yes:
+        raise InputError(f"{plan.count} points", file=plan.where, remedy="`yes` computes them all the same")
     resolved = study(plan, library or Library.default())
     with WorkFolder(out) as folder:
         journal = Journal(folder.journal, resolved.fingerprint)
-        columns = SweepColumns(resolved)
+        points = FinishedPoints(resolved)
         if not fresh:
-            journal.read(columns.fill)
-        before = columns.filled
+            journal.read(points.take)
+        before = points.done
         if _is_there(resolved, out, fresh=fresh, resumed=before > 0):
             folder.finish(None)
-            return _outcome(resolved, out, 0, stored_dataset(out)["status"].values.ravel().tolist())
+            parts = (part["status"].values.ravel().tolist() for part in parts_of(stored_dataset(out)[["status"]]))
+            return _outcome(resolved, out, 0, Counter(chain.from_iterable(parts)))
         if fresh:
             folder.restart()
-        with _keeping(folder, columns):
-            _compute(machines, folder, journal, columns, progress)
-            content = dataset(columns)
-            folder.finish(partial(netcdf, content))
-        return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
+        with _keeping(folder, points):
+            _compute(machines, folder, journal, points, progress)
+            folder.finish(partial(write_dataset, points, journal))
+        return _outcome(resolved, out, plan.count - before, points.counts)
 
 
 def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
@@ -96,31 +101,30 @@ def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bo
 
 
 def _compute(
-    machines: ComputeResources, folder: WorkFolder, journal: Journal, columns: SweepColumns, progress: Progress
+    machines: ComputeResources, folder: WorkFolder, journal: Journal, points: FinishedPoints, progress: Progress
 ) -> None:
-    """Fill ``columns`` with every point; each chunk is kept in the journal as soon as it is done."""
-    total = columns.study.plan.count
-    progress(columns.filled, total)
-    with contextlib.closing(_batches(machines, folder, columns)) as batches:
+    """Compute every missing point; each chunk is kept in the journal as soon as it is done."""
+    total = points.study.plan.count
+    progress(points.done, total)
+    with contextlib.closing(_batches(machines, folder, points)) as batches:
         for batch in batches:
             with uninterrupted():
-                journal.append(batch)
-                columns.fill(batch)
-            progress(columns.filled, total)
+                points.take(batch, journal.append(batch))
+            progress(points.done, total)
 
 
 @contextlib.contextmanager
-def _keeping(folder: WorkFolder, columns: SweepColumns) -> Iterator[None]:
+def _keeping(folder: WorkFolder, points: FinishedPoints) -> Iterator[None]:
     """Context that adds, to anything that stops the work, how far it came and that it can be continued."""
 
     def kept() -> str:
-        return f"{columns.filled} of {columns.study.plan.count} points are done and kept in {folder.path}"
+        return f"{points.done} of {points.study.plan.count} points are done and kept in {folder.path}"
 
     remedy = "the same command, without `fresh`, goes on from there"
     try:
         yield
     except KeyboardInterrupt as error:
-        if columns.filled:
+        if points.done:
             error.add_note(f"{kept()}; {remedy}")
         raise
     except ComputationError as error:
@@ -131,11 +135,10 @@ def _keeping(folder: WorkFolder, columns: SweepColumns) -> Iterator[None]:
 
 
 def _batches(
-    machines: ComputeResources, folder: WorkFolder, columns: SweepColumns
+    machines: ComputeResources, folder: WorkFolder, points: FinishedPoints
 ) -> Generator[list[Record], None, None]:
     """Records of the missing points, chunk by chunk, as they are done."""
-    study = columns.study
-    missing = columns.missing
+    study, missing = points.study, points.missing
     pieces = chunks(study, missing)
     workers = min(machines.workers or cores(), math.ceil(len(missing) / CHUNK_POINTS.get(study.plan.model, 1)))
     if machines.scheduler is not None:
@@ -145,7 +148,6 @@ def _batches(
     yield from in_pool(pieces, folder.files, workers) if workers > 1 else in_process(pieces, folder.files)
 
 
-def _outcome(study: SweepStudy, out: Path, computed: int, states: list[str]) -> SweepResult:
-    counted = Counter(states)
+def _outcome(study: SweepStudy, out: Path, computed: int, counted: Counter[str]) -> SweepResult:
     counts = {name: counted[name] for name in ("ok", "refused", "failed")}
     return SweepResult(out, study.plan.count, computed, counts, study.fingerprint)

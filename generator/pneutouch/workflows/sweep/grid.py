@@ -24,7 +24,11 @@ from pneutouch.spec.values import file_name, is_finite, name_of
 PRESSURES = "pneumatics.driving_pressures_kPa"
 """The one field that is a dimension of every sweep, because a prediction gives all its states at once."""
 
-MAX_POINTS = 1_000_000
+MAX_POINTS = 10_000_000
+"""Greatest number of points that are computed without being asked for again: ten hours of one core by the atlas."""
+
+MOST_POINTS = 2**31 - 1
+"""Greatest number of points: the longest dimension of a netCDF file."""
 
 Value = float | int | str | bool | list[Any]
 Settings = dict[str, Value]
@@ -79,8 +83,8 @@ class SweepPlan:
                 raise InputError(
                     "set for all points and varied too", file=self.where, key=key, value=self.settings[key]
                 )
-        if self.count > MAX_POINTS:
-            raise InputError(f"{self.count} points", file=self.where, remedy=f"it must be at most {MAX_POINTS}")
+        if self.count > MOST_POINTS:
+            raise InputError(f"{self.count} points", file=self.where, remedy=f"it must be at most {MOST_POINTS}")
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""Progress of a sweep: finished points in arrays, and on disk, one line with checksum a chunk: a kill loses one line.
+"""Progress of a sweep: finished points on disk, one line with checksum a chunk, so that a kill loses one line.
 
 A line is ``checksum json``. One that does not agree with its checksum was cut off by a kill or damaged later: it is
 dropped, and its points are computed again."""
@@ -10,78 +10,80 @@ import fcntl
 import json
 import os
 import shutil
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from io import FileIO
+from itertools import zip_longest
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.errors import InputError
+from pneutouch.arrays import Index
+from pneutouch.errors import ComputationError, InputError
 from pneutouch.output.files import digest, write_synced
 from pneutouch.spec.files import check_plain
 from pneutouch.stopping import cleaned, uninterrupted
-from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
+from pneutouch.workflows.sweep.variables import POINT, STATE
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 _CHECKSUM_DIGITS = 16
 
 
-MOST_STATES = 4_000_000
-"""Greatest number of states of a sweep: some 3 GB of memory, by the 0.3 GB that 400,000 take."""
-
 MOST_LINE = 2**26
 """Bytes of a line that are read at once: ten times those of a chunk with fifty driving pressures a point."""
 
 
-class SweepColumns:
-    """Values of a sweep's points in arrays by the variable's name, filled in as points are done. Raises InputError for
-    too many states."""
+class FinishedPoints:
+    """Which points of a sweep are done and where the journal holds them, so that memory does not grow with the figures.
+
+    ``widths``: bytes of the longest text of each variable of texts; ``bases``: bases of the errors; ``counts``: states
+    by their status. A dataset states all three before its first point.
+    """
 
     def __init__(self, study: SweepStudy) -> None:
         self.study = study
-        count = study.plan.count
-        self.pressures_kPa = sorted({p for i in range(count) for p in study.point(i).driving_pressures_kPa})
-        if count * len(self.pressures_kPa) > MOST_STATES:
-            problem = f"{count} points at {len(self.pressures_kPa)} driving pressures"
-            raise InputError(problem, file=study.plan.where, remedy=f"it must be at most {MOST_STATES} states")
-        self._done = np.zeros(count, dtype=bool)
-        self.states, self.points = _columns(STATE, count * len(self.pressures_kPa)), _columns(POINT, count)
+        self._done = np.zeros(study.plan.count, dtype=bool)
+        self._places: dict[int, int] = {}
+        self.widths = {v.name: 1 for v in (*STATE, *POINT) if v.text}
+        self.bases: set[str] = set()
+        self.counts: Counter[str] = Counter()
 
     @property
-    def filled(self) -> int:
+    def done(self) -> int:
         """Number of points that are done."""
         return int(np.count_nonzero(self._done))
 
     @property
-    def missing(self) -> list[int]:
-        """Numbers of the points that are not done."""
-        return [int(i) for i in np.flatnonzero(~self._done)]
+    def missing(self) -> Index:
+        """Numbers of the points that are not done, ascending."""
+        return np.flatnonzero(~self._done)
 
-    def fill(self, records: list[Record]) -> None:
-        """Fill in points; one without a state for each of its driving pressures is left to be computed again."""
+    def take(self, records: list[Record], place: int) -> None:
+        """Count in the points of a line that begins at the byte ``place`` of the journal; one without a state for each
+        of its driving pressures is left to be computed again, with all of its chunk."""
         for record in records:
-            i = record["point"]
-            requested_kPa = self.study.point(i).driving_pressures_kPa if 0 <= i < self._done.size else ()
-            if len(requested_kPa) != len(record["states"]) or not requested_kPa:
+            i, values, states = record["point"], record["values"], record["states"]
+            if not 0 <= i < self._done.size or len(states) != len(self.study.point(i).driving_pressures_kPa):
                 continue
-            _fill(self.points, i, record["values"])
-            for pressure_kPa, state in zip(requested_kPa, record["states"], strict=True):
-                _fill(self.states, i * len(self.pressures_kPa) + self.pressures_kPa.index(pressure_kPa), state)
+            if not self._done[i]:
+                self.counts.update(state["status"] for state in states)
             self._done[i] = True
+            self.bases.add(values.get("error_sensitivity_basis") or "")
+            for name, width in self.widths.items():
+                texts = (each.get(name) or "" for each in (values, *states))
+                self.widths[name] = max(width, *(len(text.encode()) for text in texts))
+        if records:
+            self._places[records[0]["point"]] = place
 
-
-def _columns(variables: Sequence[SweepVariable], count: int) -> dict[str, np.ndarray]:
-    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
-    return {v.name: np.full(count, "", object) if v.text else np.full(count, np.nan) for v in variables}
-
-
-def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
-    for name, value in values.items():
-        if value is not None and name in columns:
-            columns[name][row] = sys.intern(value) if isinstance(value, str) else value
+    def records(self, journal: Journal) -> Iterator[Record]:
+        """Records of all points in their order. Raises ComputationError for a journal that was changed meanwhile."""
+        found = journal.at(place for _, place in sorted(self._places.items()))
+        for expected, record in zip_longest(range(self._done.size), found):
+            if record is None or record["point"] != expected:
+                raise ComputationError(f"{journal.path}: was changed while the dataset was written")
+            yield record
 
 
 class Journal:
@@ -90,15 +92,16 @@ class Journal:
     def __init__(self, path: Path, fingerprint: str) -> None:
         self.path, self.fingerprint = path, fingerprint
 
-    def read(self, keep: Callable[[list[Record]], None]) -> None:
-        """Hand over the finished points, line by line; damaged lines are removed from the file. Raises InputError for
-        another sweep's journal."""
+    def read(self, keep: Callable[[list[Record], int], None]) -> None:
+        """Hand over the finished points, line by line, and where each line begins; damaged lines are removed from the
+        file. Raises InputError for another sweep's journal."""
         if not self.path.exists():
             return
         check_plain(self.path, "journal")
-        whole = True
+        whole, place = True, 0
         for line in self._lines():
-            entry = _entry(line.removesuffix(b"\n"))
+            text = line.removesuffix(b"\n")
+            entry = _entry(text)
             whole = whole and entry is not None and line.endswith(b"\n")
             if entry is not None and entry.sweep != self.fingerprint:
                 problem = (
@@ -107,17 +110,29 @@ class Journal:
                 )
                 remedy = "`fresh` starts over, or give another `out`"
                 raise InputError(problem, file=self.path.parent, remedy=remedy)
-            keep([] if entry is None else entry.records)
+            if entry is not None:
+                keep(entry.records, place)
+                place += len(text) + 1
         if not whole:
             self._rewrite()
 
-    def append(self, records: list[Record]) -> None:
-        """Add finished points; they are on the disk when this returns."""
+    def at(self, places: Iterable[int]) -> Iterator[Record]:
+        """Records of the lines that begin at these bytes."""
+        with self.path.open("rb") as file:
+            for place in places:
+                file.seek(place)
+                entry = _entry(file.readline(MOST_LINE).removesuffix(b"\n"))
+                yield from () if entry is None else entry.records
+
+    def append(self, records: list[Record]) -> int:
+        """Add finished points, which are on the disk when this returns; the byte at which their line begins."""
         text = json.dumps({"sweep": self.fingerprint, "records": records}, ensure_ascii=False).encode()
         with self.path.open("ab") as file:
+            place = file.tell()
             file.write(_checksum(text) + b" " + text + b"\n")
             file.flush()
             os.fsync(file.fileno())
+        return place
 
     def _lines(self) -> Iterator[bytes]:
         """Lines of the file; a longer one than any entry in parts, of which none is one."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from pneutouch import __version__
+from pneutouch.arrays import Index
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import InputError, PneutouchError, StatedPressureError
@@ -55,6 +56,13 @@ class SweepStudy:
     base: DesignFile
     files: dict[str, str]
     fingerprint: str
+
+    @cached_property
+    def pressures_kPa(self) -> list[float]:
+        """Driving pressures that any point has, ascending."""
+        # Those of a grid are alike: they are no axis of it.
+        points = range(self.plan.count) if self.plan.points else range(1)
+        return sorted({pressure for i in points for pressure in self.point(i).driving_pressures_kPa})
 
     def point(self, index: int) -> SweepPoint:
         """The point with number ``index``."""
@@ -210,12 +218,12 @@ class SweepChunk:
     options: PredictionOptions
 
 
-def chunks(study: SweepStudy, indices: list[int]) -> Iterator[SweepChunk]:
+def chunks(study: SweepStudy, indices: Index | Sequence[int]) -> Iterator[SweepChunk]:
     """Chunks that hold one of these numbers: cut alike whatever is missing, so that the bytes stay the same."""
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
     options = PredictionOptions(plan.model, plan.closure, plan.clamp)
-    for start in dict.fromkeys(index - index % size for index in indices):
-        numbers = range(start, min(start + size, plan.count))
+    for part in np.unique(np.asarray(indices) // size):
+        numbers = range(int(part) * size, min((int(part) + 1) * size, plan.count))
         yield SweepChunk(tuple(map(study.point, numbers)), study.name, options)
 
 
