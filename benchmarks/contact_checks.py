@@ -9,11 +9,12 @@ its harmonics, with the time over a central press. Each prints the rows of a tab
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
+from benchmarks.store import timed
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation import evaluate
@@ -115,12 +116,6 @@ def _figures(state: OffAxisState) -> tuple[float, float, float]:
     return float(state.force), float(state.sideways), float(state.rise) / KPA
 
 
-def _seconds(job: Callable[[], object]) -> float:
-    begun = time.process_time()
-    job()
-    return time.process_time() - begun
-
-
 def orders(words: list[str]) -> None:
     """Print force, sideways force and pressure rise by order, their changes from M to 2M, and the time over a central
     press of the solid."""
@@ -128,13 +123,13 @@ def orders(words: list[str]) -> None:
     free = state_at(solid, 0.0)
     placed = PlacedObject(ball(BALL).scaled(1.0 / RADIUS), OFFSET / RADIUS)
     press = OffAxisPress(solid, free, PRESS, placed, StrainProbe(solid))
-    central = min(_seconds(lambda: indent(solid, free, PRESS)) for _ in range(3))
+    central = min(timed(lambda: indent(solid, free, PRESS))[1] for _ in range(3))
     found: dict[int, tuple[float, float, float]] = {}
     for order in [int(word) for word in words] or ORDERS:
-        begun = time.process_time()
-        found[order] = _figures(press.run(order).path[-1])
-        ratio = (time.process_time() - begun) / central
-        sys.stdout.write(f"| {order} | " + " | ".join(f"{value:.4g}" for value in found[order]) + f" | {ratio:.0f} |\n")
+        pressed, seconds = timed(partial(press.run, order))
+        found[order] = _figures(pressed.path[-1])
+        cells = [*(f"{value:.4g}" for value in found[order]), f"{seconds / central:.0f}"]
+        sys.stdout.write(f"| {order} | {' | '.join(cells)} |\n")
         sys.stdout.flush()
     for order in (order for order in found if 2 * order in found):
         low, high = np.array(found[order]), np.array(found[2 * order])

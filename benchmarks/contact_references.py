@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from time import process_time
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import timed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
@@ -149,14 +149,11 @@ def _first_stiffness(run: IndentationPath) -> float:
 def balls() -> dict[str, Any]:
     """Errors of the solid under a ball, and the processor times of both comparisons: Hertz by contact radius (mm); the shell by
     wall over radius, over `TAU`, against the closed form, against theory with shear, and of that theory against the closed form."""
-    begun = process_time()
-    blocks = [[contact, hertz(contact).error] for contact in (0.02, 0.01, 0.005)]
-    middle = process_time()
-    spheres = [(ratio, [sphere(ratio, tau) for tau in TAU]) for ratio in WALLS]
-    ended = process_time()
+    blocks, hertz_s = timed(lambda: [[contact, hertz(contact).error] for contact in (0.02, 0.01, 0.005)])
+    spheres, shell_s = timed(lambda: [(ratio, [sphere(ratio, tau) for tau in TAU]) for ratio in WALLS])
     return {
         "hertz": blocks,
-        "hertz_s": middle - begun,
+        "hertz_s": hertz_s,
         "shell": [
             {
                 "wall_ratio": ratio,
@@ -166,5 +163,5 @@ def balls() -> dict[str, Any]:
             }
             for ratio, found in spheres
         ],
-        "shell_s": ended - middle,
+        "shell_s": shell_s,
     }

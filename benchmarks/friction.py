@@ -7,15 +7,15 @@ the random presses of which it times friction, and what they come to.
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Iterator
+from functools import partial
 from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
 from tests.mechanics.solid.friction_loops import friction_loop
 
-from benchmarks.store import LIBRARY, store
+from benchmarks.store import LIBRARY, store, timed
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -67,7 +67,8 @@ def costs(count: int = RANDOM) -> Iterator[FrictionCost]:
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None
         free = state_at(solid, share * inflated.limit.pressure, inflated)
-        without, with_friction = (min(_seconds((solid, free), one) for _ in range(2)) for one in (0.0, friction))
+        jobs = (partial(press, (solid, free), one, BEFORE_EVENTS) for one in (0.0, friction))
+        without, with_friction = (min(timed(job)[1] for _ in range(2)) for job in jobs)
         yield FrictionCost(wall, modulus, share, friction, with_friction / without)
 
 
@@ -147,7 +148,8 @@ def _times() -> dict[str, Any]:
     rows, ratios = [], []
     for modulus, pressure in ((0.17, 0.0), (0.17, 22 * KPA), (0.91, 0.0), (0.91, 22 * KPA), (4.0, 22 * KPA)):
         one = scene(modulus, pressure)
-        without, *others = (min(_seconds(one, friction) for _ in range(2)) for friction in FRICTIONS)
+        jobs = (partial(press, one, friction, BEFORE_EVENTS) for friction in FRICTIONS)
+        without, *others = (min(timed(job)[1] for _ in range(2)) for job in jobs)
         ratios += [other / without for other in others]
         shown = [round(other / without, 1) for other in others]
         rows.append({"press": f"{modulus:g} MPa, {pressure / KPA:g} kPa", "ratios": shown})
@@ -157,12 +159,6 @@ def _times() -> dict[str, Any]:
         "greatest": round(max(ratios), 1),
         "random": summary(list(costs())),
     }
-
-
-def _seconds(one: Scene, friction: float) -> float:
-    begun = time.process_time()
-    press(one, friction, BEFORE_EVENTS)
-    return time.process_time() - begun
 
 
 def measure(library: Library) -> dict[str, Any]:

@@ -6,14 +6,14 @@
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from benchmarks.store import LIBRARY, store
+from benchmarks.store import LIBRARY, store, timed
 from pneutouch.body import Frame, Solid
 from pneutouch.catalogue import load_scene
 from pneutouch.export.step import exact_solid
@@ -155,9 +155,7 @@ def measure(solid: Solid) -> list[Row]:
     seconds: dict[tuple[str, float], list[float]] = {key: [] for key in keys}
     for _ in range(_RUNS):
         for method, tolerance in keys:
-            start = time.process_time()
-            methods[method](tolerance)
-            seconds[method, tolerance].append(time.process_time() - start)
+            seconds[method, tolerance].append(timed(partial(methods[method], tolerance))[1])
     return [_row(solid, m, t, methods[m](t), statistics.median(seconds[m, t])) for m, t in keys]
 
 

@@ -19,13 +19,13 @@ import statistics  # noqa: E402
 import subprocess  # noqa: E402
 import sys  # noqa: E402
 import tempfile  # noqa: E402
-import time  # noqa: E402
 from collections.abc import Callable, Iterator  # noqa: E402
 from contextlib import contextmanager  # noqa: E402
 from functools import partial  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 from benchmarks import ratio_cases as cases  # noqa: E402
+from benchmarks.store import timed  # noqa: E402
 
 RUNS = 3
 RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
@@ -65,12 +65,6 @@ COMMANDS: dict[str, tuple[list[str], str, float]] = {
 """Arguments of Python by name, the imports each is compared with, and the ratio it must not pass."""
 
 
-def seconds(job: Callable[[], object]) -> float:
-    start = time.process_time()
-    job()
-    return time.process_time() - start
-
-
 @contextmanager
 def empty_folder() -> Iterator[Path]:
     """An empty folder that is the current one."""
@@ -87,7 +81,7 @@ def measure(make: Callable[[Path], cases.Pair]) -> tuple[float, float]:
     """Least processor times of the work and of what it is measured by, s."""
     with empty_folder() as folder:
         work, by = make(folder)
-        times = [(seconds(work), seconds(by)) for _ in range(1 + RUNS)][1:]
+        times = [(timed(work)[1], timed(by)[1]) for _ in range(1 + RUNS)][1:]
     return min(time for time, _ in times), min(time for _, time in times)
 
 

@@ -10,8 +10,8 @@ import itertools
 import os
 import platform
 import re
-import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,10 +22,12 @@ from scipy.optimize import brentq
 import pneutouch as pt
 from benchmarks.methods import solid_answer
 from benchmarks.scenes import Scene
-from benchmarks.store import store
+from benchmarks.store import store, timed
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import predict
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -99,11 +101,6 @@ SEARCHES: dict[str, Callable[[float, float], pt.Design | None]] = {
 }
 
 
-def timed(work: Callable[[], Any]) -> tuple[Any, float]:
-    start = time.process_time()
-    return work(), time.process_time() - start
-
-
 def searches() -> Iterator[dict[str, Any]]:
     """One row for each way and target."""
     selected(*TARGETS[0])  # Caches and imports.
@@ -123,15 +120,15 @@ def searches() -> Iterator[dict[str, Any]]:
         }
 
 
-def _swept(model: str) -> np.ndarray:
-    found = pt.sweep(pt.load("paper-dome"), model=model, driving_pressures_kPa=list(SWEPT_AT_KPA), **SWEPT)
+def _swept(model: str, fields: dict[str, Any] = SWEPT) -> np.ndarray:
+    found = pt.sweep(pt.load("paper-dome"), model=model, driving_pressures_kPa=list(SWEPT_AT_KPA), **fields)
     return np.asarray(found["sensitivity_kPa_per_N"].to_numpy().reshape(-1, len(SWEPT_AT_KPA)))
 
 
-def _looped(model: str) -> np.ndarray:
+def _looped(model: str, fields: dict[str, Any] = SWEPT) -> np.ndarray:
     rows = []
-    for wall, resin in itertools.product(*SWEPT.values()):
-        design = pt.load("paper-dome").replace(wall_thickness_mm=wall, material=resin)
+    for values in itertools.product(*fields.values()):
+        design = pt.load("paper-dome").replace(**dict(zip(fields, values, strict=True)))
         rows.append([s.sensitivity_kPa_per_N for s in design.predict(list(SWEPT_AT_KPA), model=model).states])
     return np.array(rows)
 
@@ -166,6 +163,35 @@ def sweeps() -> Iterator[dict[str, Any]]:
         }
 
 
+def _fields(count: int) -> dict[str, Any]:
+    walls = np.linspace(1.0, 1.8, min(count, 1000)).tolist()
+    return {"wall_thickness_mm": walls, "inner_radius_mm": np.linspace(9.25, 11.0, -(-count // 1000)).tolist()}
+
+
+def _arrays(model: str, fields: dict[str, Any]) -> None:
+    """The atlas's array operations alone: of each state and the 24 neighbours behind its interval."""
+    walls = np.repeat(fields["wall_thickness_mm"], 25 * len(SWEPT_AT_KPA))
+    pressures = np.resize(SWEPT_AT_KPA, walls.size) * KPA
+    respond(replace(batch_of(sensor(pt.load("paper-dome")), pressures), wall_thickness=walls))
+
+
+GROWTH: dict[str, tuple[Callable[[str, dict[str, Any]], Any], tuple[int, ...]]] = {
+    "pneutouch sweep, atlas": (_swept, (1, 10, 100, 1000, 10_000, 100_000)),
+    "loop of predict, atlas": (_looped, (1, 10, 100, 1000)),
+    "pneutouch sweep, solid": (_swept, (1, 8, 64)),
+    "loop of predict, solid": (_looped, (1, 8, 64)),
+    "array operations, atlas": (_arrays, (1, 10, 100, 1000)),
+}
+"""Ways to predict many designs, and the numbers of designs for which each is timed."""
+
+
+def growth() -> Iterator[dict[str, Any]]:
+    """Processor time of each way over the number of designs; the sweep's with its intervals."""
+    for name, (way, counts) in GROWTH.items():
+        jobs = [partial(way, name.split(", ")[1], _fields(count)) for count in (1, *counts)]
+        yield {"way": name, "designs": counts, "processor_s": [timed(job)[1] for job in jobs][1:]}
+
+
 def machine() -> str:
     """What the times were taken on."""
     cpu = Path("/proc/cpuinfo").read_text(encoding="utf-8") if Path("/proc/cpuinfo").exists() else ""
@@ -175,7 +201,7 @@ def machine() -> str:
 
 
 def main() -> None:
-    data = {"machine": machine(), "searches": list(searches()), "sweeps": list(sweeps())}
+    data = {"machine": machine(), "searches": list(searches()), "sweeps": list(sweeps()), "growth": list(growth())}
     store("search", data)
 
 

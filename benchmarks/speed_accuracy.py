@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import statistics
-import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from benchmarks.methods import (
     why_no_answer,
 )
 from benchmarks.scenes import SCENES, Scene
+from benchmarks.store import timed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.membrane import limit_point
@@ -201,9 +202,8 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
         seconds: dict[str, list[float]] = {method: [] for method in METHODS}
         for _ in range(_RUNS):
             for method in METHODS:
-                start = time.process_time()
-                answers[method] = run(method, scene)
-                seconds[method].append(time.process_time() - start)
+                answers[method], taken_s = timed(partial(run, method, scene))
+                seconds[method].append(taken_s)
         for method, answer in answers.items():
             blank = {"method": method, "scene": scene.name, "processor_s": None}
             taken = {"processor_s": statistics.median(seconds[method])}

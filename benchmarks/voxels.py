@@ -12,12 +12,13 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.store import DOCS, LIBRARY, store
+from benchmarks.store import DOCS, LIBRARY, store, timed
 from pneutouch.body import Solid
 from pneutouch.body.section import SolidSection
 from pneutouch.catalogue import load_scene
@@ -147,10 +148,8 @@ def dithers() -> list[DitherRow]:
     rows = []
     for method, make in METHODS.items():
         for fraction in FRACTIONS:
-            start = time.process_time()
-            block = make(fraction)
-            made = block.size * (1 + _WARM / SHAPE[0] * (method == "error diffusion"))
-            seconds = (time.process_time() - start) / made * 1e6
+            block, taken = timed(partial(make, fraction))
+            seconds = taken / block.size / (1 + _WARM / SHAPE[0] * (method == "error diffusion")) * 1e6
             frequency, power = spectrum(block)
             long = power[frequency < 1 / COARSE]
             rows.append(
@@ -282,12 +281,8 @@ def rasters(solid: Solid) -> list[RasterRow]:
 
 
 def _timed(run: Callable[[], object], runs: int) -> tuple[float, object]:
-    best, found = np.inf, None
-    for _ in range(runs):
-        start = time.process_time()
-        found = run()
-        best = min(best, time.process_time() - start)
-    return float(best), found
+    found = [timed(run) for _ in range(runs)]
+    return min(seconds for _, seconds in found), found[-1][0]
 
 
 def stack(assembly: Any, mode: str) -> dict[str, Any]:
@@ -297,9 +292,7 @@ def stack(assembly: Any, mode: str) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as scratch:
         folder, _ = write_voxels(plan, Path(scratch), "")
         seconds = time.process_time() - start
-        start = time.process_time()
-        held = read_stack(folder)
-        reading = time.process_time() - start
+        held, reading = timed(partial(read_stack, folder))
         if mode == "High Mix":
             draw(held, DOCS / "voxels.png")
         return {
