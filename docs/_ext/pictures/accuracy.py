@@ -245,15 +245,35 @@ def validation() -> str:
 
 
 def speed_against_accuracy() -> str:
-    """Error over time for each kind of work; filled is this project."""
+    """Error over time for each kind of work, and time over the number of designs; filled is this project."""
     found = stored("accuracy")["work"]
     with figure(180, 200) as drawn:
         axes = drawn.subplots(4, 2).ravel()
         for ax, panel in zip(axes, found, strict=False):
             _panel(ax, panel)
-        for ax in axes[len(found) :]:
-            ax.set_visible(False)
+        _growth(axes[len(found)], stored("search")["growth"])
         return svg(drawn)
+
+
+def _growth(ax: Axes, ways: Rows) -> None:
+    """Processor time over the number of designs."""
+    for k, way in enumerate(ways):
+        ours, limit = way["way"].startswith(OURS), way["way"].startswith("array")
+        ax.plot(
+            way["designs"],
+            way["processor_s"],
+            marker="" if limit else MARKERS[k],
+            color=ACCENT if ours else INK,
+            mfc=ACCENT if ours else "white",
+            ls=LINES[1] if limit else LINES[0],
+            lw=1.4 if ours else 0.9,
+            ms=4,
+            label=way["way"],
+        )
+    ax.set(xscale="log", yscale="log", xlabel="designs", ylabel="processor time (s)")
+    ax.set_title("Many designs, three driving pressures", fontsize=7.5)
+    ax.set(xlim=(0.7, 2e5), ylim=(5e-3, 3e5))
+    ax.legend(fontsize=5.5, loc="upper left", ncols=2, columnspacing=1.0)
 
 
 def _panel(ax: Axes, panel: dict[str, Any]) -> None:
