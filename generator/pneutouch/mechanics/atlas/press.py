@@ -245,4 +245,4 @@ def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Sens
         sensor.gas.gauge_limit,
         np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch,
     )
-    return SensorBatch(*(np.array(np.broadcast_to(fact, size), dtype=float) for fact in facts))
+    return SensorBatch(*(np.full(size, fact, float) for fact in facts))

@@ -149,17 +149,18 @@ def _state(
     known = slice(0, ok.size if ok.all() else int(np.argmin(ok)))
     field = {name: values[i, known] for name, values in fields.items()}
     depth = (press.apex[i] - whole.height[i, known]) * length
-    range_end = float(np.nan_to_num(response.range_end[i]))
+    has_range = response.range_end[i] > 0.0
+    range_end = float(response.range_end[i]) if has_range else 0.0
     line = Figures(*(float(column[i]) for column in response.lines))
-    pressed = (values[i, known] for values in (whole.point.force, whole.point.pressure - press.pressure[:, None]))
-    force, rise = (_begun(depth / length, values) * mu for values in pressed)
+    pressed = np.stack([whole.point.force[i, known], whole.point.pressure[i, known] - press.pressure[i]])
+    force, rise = _begun(depth / length, pressed) * mu
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]),
         apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length,
         cavity_volume=float(press.volume(press.free)[i]) * length**3,
         range_end=range_end,
-        figures=line if range_end > 0 and line.force_high > line.force_low else None,
+        figures=line if has_range and line.force_high > line.force_low else None,
         indentation=depth,
         force=force * length**2,
         pressure_rise=rise,
@@ -171,24 +172,26 @@ def _state(
 
 
 def _begun(travel: Array, values: Array) -> Array:
-    """Force or rise (m,) at travels in R0; up to `_RESOLVED` the power from the origin through the states beyond it."""
+    """Force and rise (2, m) at travels in R0; up to `_RESOLVED` the power from the origin through the states beyond."""
     first, later = np.searchsorted(travel, (_RESOLVED, 2 * _RESOLVED))
     if first == travel.size:
         return values
     ends = slice(first, later + 1, max(later - first, 1))
-    known, at = np.maximum(values[ends], 1e-300), travel[ends]
-    power = np.log(known[-1] / known[0]) / np.log(at[-1] / at[0]) if at.size > 1 else 1.0
-    return np.append(known[0] * (travel[:first] / at[0]) ** np.clip(power, 1.0, 2.0), values[first:])
+    known, at = np.maximum(values[:, ends], 1e-300), travel[ends]
+    power = np.log(known[:, -1:] / known[:, :1]) / np.log(at[-1] / at[0]) if at.size > 1 else 1.0
+    begun = known[:, :1] * (travel[:first] / at[0]) ** np.clip(power, 1.0, 2.0)
+    return np.concatenate([begun, values[:, first:]], axis=1)
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
     """Event that ends the range, by its number ``end`` in `ENDS`, and one of creasing, if any, in order of travel."""
     happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
-    points = [PathPoint(float(x), float(y)) for x, y in zip(depth, field["fold"], strict=True)]
-    pairs = zip([points[0], *points], points, strict=False)
-    where = next((at for a, b in pairs if (at := crossing(a, b, CREASE)) is not None), None)
-    if where is not None:
-        happened.append(Event("creasing", where, False, DETAIL["crease"]))
+    creased = np.flatnonzero(field["fold"] >= CREASE)
+    if creased.size:
+        before, after = (
+            PathPoint(float(depth[j]), float(field["fold"][j])) for j in (max(creased[0] - 1, 0), creased[0])
+        )
+        happened.append(Event("creasing", crossing(before, after, CREASE) or 0.0, False, DETAIL["crease"]))
     return sorted(happened, key=lambda event: event.indentation)
 
 

@@ -8,7 +8,7 @@ Also the uncertainty of the limit pressure alone, without a press, so that thous
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,6 +32,9 @@ STEP = 0.015
 edge of buckling is piecewise linear), for larger ones curvature, mostly where a wall lies down on its base. Half and
 twice the step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %,
 mostly by less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
+
+_ONE_PAIR = 4.0
+"""Spread in steps up to which its ends are the step too: the derivative is then over the spread, as it is to count."""
 
 _BENT_SHARE = 0.05
 """Relative difference above which the effect over an input's whole spread replaces its local derivative."""
@@ -76,30 +79,37 @@ def derivatives(
         step: Half of the central difference, relative.
         shift: Change of the figures from the plate to another contact.
     """
-    unit = unit_step(batch)
-    widest = standard.max(axis=1)
-    far = np.sqrt(kurtosis) * widest
-    offsets = (step * unit, -step * unit, far, -far)
-    rows = [moved(batch, name, offset[i]) for i, name in enumerate(INPUTS) for offset in offsets]
-    every, size = SensorBatch.join([batch, *rows]), len(batch)
+    size, unit, widest = len(batch), unit_step(batch), standard.max(axis=1)
+    near, far = step * unit, np.sqrt(kurtosis) * widest
+    wide = far > _ONE_PAIR * near
+    small = np.where(wide, near, np.maximum(near, far))
+    inputs = range(len(INPUTS))
+    moves = [(i, sign * small[i], np.arange(size)) for i in inputs for sign in (1.0, -1.0)]
+    moves += [(i, sign * far[i], np.flatnonzero(wide[i])) for i in inputs for sign in (1.0, -1.0)]
+    own = np.concatenate([np.arange(size), *(rows for _, _, rows in moves)])
+    every = SensorBatch.join([batch, *(moved(batch.take(rows), INPUTS[i], by[rows]) for i, by, rows in moves)])
     logs = log_figures(every)
     if shift is not None:
-        by = np.log(every.shear_modulus.reshape(-1, size) / batch.shear_modulus)
-        logs = logs + shift.at(by).reshape(logs.shape)
-    here = logs[:, :size]
-    around = logs[:, size:].reshape(len(logs), len(INPUTS), len(offsets), size).transpose(1, 2, 0, 3) - here
-    local = _slope(around[:, 0], around[:, 1]) / (step * unit[:, None])
-    whole, known = _over_spread(around[:, 2], around[:, 3], kurtosis[:, None])
+        by = np.log(every.shear_modulus / batch.shear_modulus[own])
+        logs = logs + replace(shift, nodes=shift.nodes[..., own]).at(by[None])[:, 0]
+    here, *around = np.split(logs, np.cumsum([size, *(rows.size for _, _, rows in moves)])[:-1], axis=1)
+    beside = np.stack(around[: 2 * len(INPUTS)]).reshape(len(INPUTS), 2, *here.shape) - here
+    ends = beside * (far / small)[:, None, None]
+    for k, ((i, _, rows), found) in enumerate(zip(moves, around, strict=True)):
+        if k >= 2 * len(INPUTS):
+            ends[i, k % 2][:, rows] = found - here[:, rows]
+    local = _slope(beside[:, 0], beside[:, 1]) / small[:, None]
+    whole, known = _over_spread(ends[:, 0], ends[:, 1], kurtosis[:, None])
     linear = np.abs(local) * widest[:, None]
     bent = (
         known & (np.abs(whole - linear) > _BENT_SHARE * linear) & (standard >= _WIDE * widest[:, None]) & (standard > 0)
     )
-    sign = np.where(around[:, 2] < around[:, 3], -1.0, 1.0)
+    sign = np.where(ends[:, 0] < ends[:, 1], -1.0, 1.0)
     slopes = np.where(bent, sign * whole / np.where(bent, widest[:, None], 1.0), local)
     scale = np.ones_like(unit)
     scale[DEAD] = batch.dead_volume
-    one_sided = np.asarray((np.isnan(around[:, 2:]).any(axis=1) & np.isfinite(here)).any(axis=1))
-    return Derivatives(here, local * scale[:, None], local, slopes, one_sided)
+    missing = (np.isnan(ends).any(axis=1) & np.isfinite(here)).any(axis=1)
+    return Derivatives(here, local * scale[:, None], local, slopes, missing & (far >= near))
 
 
 def _slope(up: Array, down: Array) -> Array:
