@@ -64,7 +64,8 @@ class HarmonicFace(BaseFace):
 @dataclass(frozen=True)
 class HarmonicFields(PointFields):
     """Fields at the integration points and angles, n in all: ``strains`` (n, 3, 3) are the transposed deformation
-    gradients F, by R, by Z and around the axis; ``jets`` (n,) their determinants, ``basis`` (n, 3, 3) their cofactors.
+    gradients F, by R, by Z and around the axis; ``jets`` (n,) their determinants, ``basis`` (n, 3, 3) their cofactors,
+    ``by_cell`` as ``strains``.
 
     pressure: derivative of the averaged volume's energy by det F, (n,), weighted.
     """
@@ -144,15 +145,26 @@ class HarmonicModel(SolidModel):
         cofactor = np.stack([np.cross(gradient[:, (k + 1) % 3], gradient[:, (k + 2) % 3]) for k in range(3)], axis=1)
         volume = np.einsum("ni,ni->n", gradient[:, 0], cofactor[:, 0])
         if not volume.min() > 0.0:
-            return PointFields(np.inf, f, f, f)
+            return PointFields(np.inf, f, f, f, f, f)
         n_cells, n_points = self._weight.shape
         change = (volume - 1.0).reshape(n_cells, n_points, -1)
         content = np.matmul(np.matmul(self._tested, change), self._cosines.T)
         stored = 0.5 * float(np.vdot(self._kappa * content, content))
-        by_content = np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content)
-        pressure = np.matmul(by_content, self._cosines).ravel()
+        pressure = self._pressure(content)
         law = self._law.at(gradient, cofactor, volume, self._share)
-        return HarmonicFields(law.energy + stored, gradient, volume, cofactor, law, pressure)
+        return HarmonicFields(law.energy + stored, gradient, volume, cofactor, content, f, law, pressure)
+
+    def _pressure(self, content: Array) -> Array:
+        """Averaged pressure (n,), weighted, of a ``content`` (n_cells, n_modes, waves + 1)."""
+        return np.matmul(np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content), self._cosines).ravel()
+
+    def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
+        """Fields ``here`` at the averaged pressure that the last Newton step expected, as in the solid."""
+        assert isinstance(here, HarmonicFields)
+        swelling = self._swelling(before)
+        grown = np.matmul(swelling, move[self.mesh.cells].reshape(len(swelling), -1, 1))
+        expected = before.content + grown.reshape(before.content.shape)
+        return replace(here, pressure=here.pressure + self._pressure(expected - here.content))
 
     def forces(self, local: PointFields) -> Array:
         """Derivative of the stored energy by the coefficients of the cells, (n_cells, n_coefficients)."""

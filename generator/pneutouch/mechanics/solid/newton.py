@@ -308,12 +308,12 @@ def minimise(
     state = evaluate(scene, x)
     if state is None:
         return NewtonFailure("the starting guess turns the wall inside out")
-    left = np.inf
+    left, before = np.inf, None
     for iteration in range(max_iterations):
         size = float(np.linalg.norm(state.residual))
         if size <= RESIDUAL * state.scale and left <= GAIN * (state.local.energy + state.scale * scene.solid.wall):
             return NewtonResult(state, iteration)
-        newton = find(scene, state)
+        newton = find(scene, state if before is None else _mixed(scene, before, state))
         slope = float(newton.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
             newton = downhill(state, full_tangent(scene, state), state.residual)
@@ -324,10 +324,15 @@ def minimise(
         if moved is None:
             return NewtonFailure("no step along the Newton direction lowers the energy")
         # The gain of a Newton step is proportional to the square of the residual at its start.
-        state, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
+        before, state, left = state, moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
     return NewtonFailure(
         f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
     )
+
+
+def _mixed(scene: SolidScene, before: SolverState, here: SolverState) -> SolverState:
+    """The state ``here`` for a tangent with the averaged pressure that the step from ``before`` expected."""
+    return replace(here, local=scene.solid.mixed(before.local, here.local, here.x - before.x))
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
