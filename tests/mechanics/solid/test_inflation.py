@@ -134,6 +134,15 @@ def test_scale_invariance(length, stress):
     assert at[1].inner_apex / length == pytest.approx(at[0].inner_apex, rel=1e-9)
 
 
+@pytest.mark.parametrize("wall", [1.0, 1.05, 1.5])
+def test_the_volume_of_the_limit_point_is_met_to_its_tolerance(wall):
+    """Also where the limit lies next to a state of the path: the search crept towards it and gave up."""
+    run = inflate(SolidModel(dome(Hemisphere(8.5, wall)), neo_hookean(0.17)), past_limit=1.0)
+    before, limit, after = run.states[-3:]
+    bend = (before.stiffness - after.stiffness) / (after.volume - before.volume)
+    assert abs(limit.stiffness) < 2.0e-7 * bend * limit.volume
+
+
 def test_driving_pressure_beyond_the_limit_is_refused():
     solid = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17))
     with pytest.raises(UnreachableLoadError) as caught:

@@ -156,7 +156,8 @@ class HarmonicModel(SolidModel):
 
     def _pressure(self, content: Array) -> Array:
         """Averaged pressure (n,), weighted, of a ``content`` (n_cells, n_modes, waves + 1)."""
-        return np.matmul(np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content), self._cosines).ravel()
+        by_content = np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content)
+        return np.asarray(np.matmul(by_content, self._cosines)).ravel()
 
     def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
         """Fields ``here`` at the averaged pressure that the last Newton step expected, as in the solid."""

@@ -36,6 +36,7 @@ from pneutouch.mechanics.prediction import (
 )
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import RigidBase, Sensor
+from pneutouch.mechanics.solid.continuation import PathGuide
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells
@@ -69,8 +70,10 @@ class SolidElements(SensorModel):
         return sensor.protocol.off_axis
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers of `solid_result`, one sensor at a time."""
-        return one_by_one(lambda *one: ModelAnswer(solid_result(*one)), sensors, driving_pressures)
+        """Answers of `solid_result`, one sensor at a time: the paths of each guide those of the next."""
+        guides: dict[float, PathGuide] = {}
+        press = partial(_state, guides=guides)
+        return one_by_one(lambda *one: ModelAnswer(solid_result(*one, pressed_state=press)), sensors, driving_pressures)
 
     def stated_error(self, sensor: Sensor) -> float:
         """Relative error of the mesh in sensitivity, which is greater for an object other than a plate."""
@@ -282,10 +285,15 @@ def press_settings(sensor: Sensor) -> PressSettings:
     )
 
 
-def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
+def _state(
+    sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float, guides: dict[float, PathGuide] | None = None
+) -> SensorState:
+    """State at a driving pressure (MPa); its path is led by that in ``guides`` at this pressure, and replaces it."""
     free = state_at(probe.solid, pressure, run)
     test, press = sensor.protocol, press_settings(sensor)
-    pressed = indent(probe.solid, free, press, probe)
+    pressed = indent(probe.solid, free, press, probe, (guides or {}).get(pressure))
+    if guides is not None and pressed.guide is not None:
+        guides[pressure] = pressed.guide
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)

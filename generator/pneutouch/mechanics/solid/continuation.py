@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
 LONGEST = 0.06
 _SHORTEST = 1.0e-4
+#: Travels that differ by less than this, in R0, are the same step of two paths.
+_SAME = 1.0e-9
 #: Accuracy, as a share, of the work of the first step, where contact begins at a point.
 _FIRST_STEP = 0.06
 #: A step that loses more than this share of a full step's work has left its branch.
@@ -109,14 +111,28 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     return max(0.0, share - allowance)
 
 
+@dataclass(frozen=True)
+class PathGuide:
+    """Errors of extrapolation along the path of a dome on a mesh with the same cells: travel (n,) to each state, R0,
+    and the displacements (n, n_nodes, 2) by which its extrapolation fell short."""
+
+    travel: Array
+    missed: Array
+
+
 class PathFollower:
-    """The states of a path, and steps to further plate heights, from first contact on; heights in R0."""
+    """The states of a path, and steps to further plate heights, from first contact on; heights in R0.
+
+    ``guide``: that of a similar dome, whose extrapolation errs alike where the steps are the same; None: no guide.
+    """
 
     #: 1 while the plate comes down, -1 while it goes up.
     down = 1.0
 
-    def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array) -> None:
-        self._solid, self._plate = solid, plate
+    def __init__(
+        self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, guide: PathGuide | None = None
+    ) -> None:
+        self._solid, self._plate, self._guide = solid, plate, guide
         self.path = [self._first(SolidScene(solid, supply, plate), start)]
 
     def _first(self, scene: SolidScene, start: Array) -> PlateState:
@@ -169,7 +185,7 @@ class PathFollower:
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height`, solved from an extrapolated guess, or the failure; the path is not changed."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
-        solved = self._least(scene, self._turning(height))
+        solved = self._least(scene, self._turning(height) + self._expected_miss(height))
         if isinstance(solved, NewtonFailure):
             solved = minimise(scene, self.here.state.x)
         if isinstance(solved, NewtonFailure):
@@ -179,6 +195,22 @@ class PathFollower:
     def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
         """State of least energy near positions x (n_nodes, 2), or the failure."""
         return minimise(scene, x)
+
+    def guide(self) -> PathGuide:
+        """Guide for the path of a similar dome."""
+        before, missed = copy(self), [np.zeros_like(self.here.state.x)]
+        for k, state in enumerate(self.path[1:], 1):
+            before.path = self.path[:k]
+            missed.append(state.state.x - before._turning(state.height))
+        return PathGuide(self.path[0].height - np.array([state.height for state in self.path]), np.stack(missed))
+
+    def _expected_miss(self, height: float) -> Array | float:
+        """Displacements (n_nodes, 2) by which extrapolation will fall short, by the guide; 0 if it has no such step."""
+        guide, ahead = self._guide, len(self.path)
+        if guide is None or ahead >= guide.travel.size or guide.missed[0].shape != self.here.state.x.shape:
+            return 0.0
+        step = self.path[0].height - np.array([self.here.height, height])
+        return guide.missed[ahead] if np.abs(guide.travel[ahead - 1 : ahead + 1] - step).max() < _SAME else 0.0
 
     def _extrapolate(self, height: float) -> Array:
         """Positions extrapolated along the path's tangent; at first contact those of the last state."""

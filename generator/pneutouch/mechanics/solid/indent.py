@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +23,7 @@ from pneutouch.mechanics.events import (
     crossing,
 )
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
+from pneutouch.mechanics.solid.continuation import PathFollower, PathGuide, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
@@ -117,13 +117,15 @@ class PressState:
 class IndentationPath:
     """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached.
+    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached. ``guide``:
+    for a press of a similar dome.
     """
 
     states: list[PressState]
     path: list[PressState]
     events: list[SolidEvent]
     complete: bool
+    guide: PathGuide | None = None
 
     def column(self, name: str) -> Array:
         """The field ``name`` of every state, (n_states,)."""
@@ -138,15 +140,20 @@ class IndentationPath:
 
 
 def indent(
-    solid: SolidModel, free: FreeState, press: PressSettings, probe: StrainProbe | None = None
+    solid: SolidModel,
+    free: FreeState,
+    press: PressSettings,
+    probe: StrainProbe | None = None,
+    guide: PathGuide | None = None,
 ) -> IndentationPath:
     """Shut in the gas at a free state and lower the plate; presses of one solid can share a ``probe``, None: a new one.
+    ``guide``: that of a press without friction on a similar dome, which saves Newton steps.
 
     `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
     there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
     """
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
-    follower, length, plate = follower_of(solid, free, press, touch), solid.length, touch.body
+    follower, length, plate = follower_of(solid, free, press, touch, guide), solid.length, touch.body
     recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
@@ -161,18 +168,20 @@ def indent(
         if jump is not None or _ended(events, solid):
             break
     events += recorder.losses(follower.path[: len(states)], press.waves)
-    return _finish(states, events, jump, recorder, press)
+    return replace(_finish(states, events, jump, recorder, press), guide=follower.guide())
 
 
-def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch) -> PathFollower:
-    """Path follower of a press, at the first contact ``touch``, with the gas shut in."""
+def follower_of(
+    solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch, guide: PathGuide | None = None
+) -> PathFollower:
+    """Path follower of a press, at the first contact ``touch``, with the gas shut in; ``guide`` as in `indent`."""
     gas = shut_in(solid, free, press)
     if press.friction:
         # Most presses have no friction: its modules are loaded only here.
         from pneutouch.mechanics.solid.friction_path import FrictionFollower
 
         return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
-    return PathFollower(solid, gas, touch.body, free.unit.x)
+    return PathFollower(solid, gas, touch.body, free.unit.x, guide)
 
 
 def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:

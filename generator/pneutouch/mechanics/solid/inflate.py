@@ -21,8 +21,9 @@ from pneutouch.mechanics.solid.newton import (
     SolidScene,
     SolverState,
     UnreachableLoadError,
+    full_tangent,
     minimise,
-    stability,
+    rank_one,
 )
 from pneutouch.mechanics.solid.object_contact import Indenter, Plate, first_contact, flat_radius, rim_radius
 
@@ -78,7 +79,7 @@ class Inflation:
 def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> FreeState:
     """Record of a converged state, with dp/dV = 1/(g' K^-1 g) and the stability of K: K stiffness, g gradient of V."""
     state = outcome.state
-    tangent = stability(scene, state)
+    tangent = rank_one(state, full_tangent(scene, state), state.residual)
     compliance = float(state.by_volume @ tangent.soft)
     x = state.x * solid.length
     return FreeState(
@@ -228,7 +229,8 @@ def _slope_root(before: FreeState, after: FreeState) -> float:
     roots = np.roots([3.0 * (first + last - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * first - last), first])
     inside = [float(r.real) for r in roots if abs(r.imag) < 1e-12 and 0.0 < r.real < 1.0]
     share = inside[0] if inside else first / (first - last)
-    return a + (b - a) * float(np.clip(share, 0.02, 0.98))
+    # A larger share would creep towards a limit next to one end.
+    return a + (b - a) * float(np.clip(share, 1.0e-4, 1.0 - 1.0e-4))
 
 
 def state_at(solid: SolidModel, pressure: float, inflation: Inflation | None = None) -> FreeState:

@@ -238,7 +238,10 @@ class HarmonicSolid:
                 if constant is None:
                     names = ("constant", "linear", "square")
                     constant, linear, square = (self._assembled([getattr(f, p) for f in families]) for p in names)
-                out[n] = constant + n * linear + n * n * square
+                out[n] = n * square
+                out[n] += linear
+                out[n] *= n
+                out[n] += constant
             if n > 1:
                 _fix(out[n], self._on_axis)
         return out

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -31,6 +32,12 @@ class AxisymmetryLoss:
     height: float
 
 
+@lru_cache(maxsize=1)
+def _variation(solid: SolidModel) -> HarmonicSolid:
+    """Second variation of a solid; kept, because all presses of one solid check its stability."""
+    return HarmonicSolid(solid)
+
+
 def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
     """Numbers of waves, among those given, for which the second variation at a state is not positive definite."""
     return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
@@ -42,7 +49,7 @@ def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MO
     States are checked at every quarter of R0 of plate travel, and the last one. A loss between two of these is
     bracketed by bisection over the states in between, and located by solving for states between neighbours.
     """
-    harmonic = HarmonicSolid(solid)
+    harmonic = _variation(solid)
     losses: list[AxisymmetryLoss] = []
     watched, reached = tuple(range(1, most + 1)), 0
     for k, state in enumerate(path):

@@ -200,9 +200,9 @@ def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
     return None
 
 
-CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
-"""Number of points in a chunk by model (others: 1): about a second of work, so that a stop or a slow machine costs
-little. The atlas answers them together."""
+CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32, "solid": 8}
+"""Number of points in a chunk by model (others: 1): a second or two of work, so that a stop or a slow machine costs
+little. The atlas answers them together; in the solid the paths of one point guide those of the next."""
 
 
 Record = dict[str, Any]
@@ -313,18 +313,18 @@ def _drawn(source: DesignSource, point: SweepPoint, options: PredictionOptions, 
 
 
 def _answers(scenes: Sequence[DrawnScene | Exception], model: str) -> list[dict[str, Answered]]:
-    """Answers of the atlas, under its name, for the scenes that it covers, computed in one pass; empty for others."""
+    """Answers of atlas or solid, under its name, for the scenes that it covers, computed together; empty for others."""
     found: list[dict[str, Answered]] = [{} for _ in scenes]
-    if model not in ("atlas", "auto"):
+    if model not in ("atlas", "auto", "solid"):
         return found
-    atlas = model_named("atlas")
+    together = model_named("solid" if model == "solid" else "atlas")
     covered = {
-        row: one for row, one in enumerate(scenes) if isinstance(one, DrawnScene) and atlas.covers(one.sensor) is None
+        row: one for row, one in enumerate(scenes) if isinstance(one, DrawnScene) and not together.covers(one.sensor)
     }
     sensors = [one.sensor for one in covered.values()]
     pressures = [np.array(one.scene.design.pneumatics.driving_pressures_kPa) * KPA for one in covered.values()]
-    for row, answer in zip(covered, atlas.answer(sensors, pressures), strict=True):
-        found[row] = {"atlas": answer}
+    for row, answer in zip(covered, together.answer(sensors, pressures), strict=True):
+        found[row] = {together.name: answer}
     return found
 
 
