@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -177,11 +177,17 @@ def solid_result(
     ``pressed_state`` presses at one driving pressure; None: the axisymmetric solid does.
     Raises BeyondLimitError beyond the limit point, ComputationError if no equilibrium is found.
     """
-    probe = solid_probe(sensor, cells)
-    run = inflate(probe.solid, past_limit=past_limit)
+    probe, run = _inflated(sensor, cells, past_limit)
     press = pressed_state or _state
     states = tuple(press(sensor, probe, run, float(p)) for p in driving_pressures)
     return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(probe.solid, run), states)
+
+
+@lru_cache(maxsize=1)
+def _inflated(sensor: Sensor, cells: int | None, past_limit: float) -> tuple[StrainProbe, Inflation]:
+    """Probe and inflation for `solid_result`; kept for further driving pressures of the same sensor."""
+    probe = solid_probe(sensor, cells)
+    return probe, inflate(probe.solid, past_limit=past_limit)
 
 
 def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:

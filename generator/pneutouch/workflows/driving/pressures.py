@@ -52,12 +52,14 @@ class ReachCurves:
         evaluation: Evaluation of the design at a driving pressure of 0.
         model: Name of the model of all states.
         states: States at ascending driving pressures; `add` inserts one.
-        budgets: Driving pressures (MPa) and the records of the uncertainty there."""
+        budgets: Driving pressures (MPa) and the records of the uncertainty there.
+        solved: States computed one by one, by driving pressure (MPa)."""
 
     evaluation: Evaluation
     model: str
     states: list[SensorState]
     budgets: list[tuple[float, UncertaintyRecord]] = field(default_factory=list)
+    solved: dict[float, SensorState] = field(default_factory=dict)
 
     @property
     def pressures(self) -> Array:
@@ -89,15 +91,21 @@ class ReachCurves:
         return SealedGas(self.pressures, volumes, sensor.gas.dead_volume, sensor.gas.ambient_pressure, volumes[0])
 
     def predicted(self, pressures: list[float]) -> SensorPrediction:
-        """The prediction at ascending driving pressures, MPa."""
-        options, scene = self.evaluation.options, self.evaluation.scene
-        return predict(scene.name, self.evaluation.sensor, pressures, model=self.model, closure=options.closure)
+        """The prediction at ascending driving pressures, MPa; without sway, which changes no figure."""
+        options, sensor = self.evaluation.options, self.evaluation.sensor.replace(waves=0)
+        return predict(self.evaluation.scene.name, sensor, pressures, model=self.model, closure=options.closure)
+
+    def at(self, pressure: float) -> SensorState:
+        """The state at a driving pressure (MPa), computed once."""
+        if pressure not in self.solved:
+            (self.solved[pressure],) = self.predicted([pressure]).states
+        return self.solved[pressure]
 
     def add(self, pressure: float) -> SensorState:
         """The state at a driving pressure (MPa), computed and inserted if it is missing."""
         k = int(np.searchsorted(self.pressures, pressure))
         if k == len(self.states) or self.states[k].driving_pressure != pressure:
-            self.states.insert(k, self.predicted([pressure]).states[0])
+            self.states.insert(k, self.at(pressure))
         return self.states[k]
 
 
@@ -125,21 +133,17 @@ def reach_curves(
     evaluation = evaluate(design, vented, library=library, model=model, **options)  # type: ignore[arg-type]
     top = _TOP * evaluation.prediction.limits.lowest
     progress(1, 3, "predicting over the driving pressures")
-    probed = predict(
-        evaluation.scene.name,
-        evaluation.sensor,
-        [0.0, 0.5 * top, top],
-        model=model,
-        closure=evaluation.options.closure,
-        tolerance=evaluation.options.tolerance,
-    )
-    curves = ReachCurves(evaluation, probed.model, [])
-    grid = np.linspace(0.0, top, _POINTS.get(probed.model, _FEW))
+    chosen, asked = evaluation.prediction.model, evaluation.options
+    if asked.model == "auto":
+        known = evaluation.scene.name, evaluation.sensor, [0.0, 0.5 * top, top]
+        chosen = predict(*known, model="auto", closure=asked.closure, tolerance=asked.tolerance).model
+    curves = ReachCurves(evaluation, chosen, [])
+    grid = np.linspace(0.0, top, _POINTS.get(chosen, _FEW))
     prediction = curves.predicted(grid.tolist())
     curves.states = list(prediction.states)
     progress(2, 3, "computing the uncertainty")
-    chosen = np.unique(np.linspace(0, len(grid) - 1, _BUDGETS).round().astype(int))
-    few = replace(prediction, states=tuple(prediction.states[k] for k in chosen))
+    some = np.unique(np.linspace(0, len(grid) - 1, _BUDGETS).round().astype(int))
+    few = replace(prediction, states=tuple(prediction.states[k] for k in some))
     entries = uncertainties(few, evaluation.sensor, evaluation.scene, lambda: evaluation.resins)
     curves.budgets = [(state.driving_pressure, entry) for state, entry in zip(few.states, entries, strict=True)]
     if 0.0 < evaluation.rating.pressure < top:
@@ -219,7 +223,7 @@ def _root(curves: ReachCurves, figure: str, value: float, ends: tuple[float, flo
     middle = off = np.nan
     for _ in range(_TRIES):
         middle = high - off_high * (high - low) / (off_high - off_low)
-        off = figure_of(curves.predicted([middle]).states[0], figure) / value - 1.0
+        off = figure_of(curves.at(middle), figure) / value - 1.0
         if np.isnan(off) or abs(off) <= _EXACT or abs(high - low) <= _EXACT * high:
             break
         if off * off_high < 0:
