@@ -22,7 +22,7 @@ from pneutouch.mechanics.harmonic.surface import revolved
 from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import lapack
 from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseMeeting
-from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL, gauss_square, strain_operator
+from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.newton import NewtonDirection, SolidScene, SolverState, downhill, tangent, with_contact
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation
@@ -114,19 +114,17 @@ class HarmonicModel(SolidModel):
 
     def _operators(self, signs: Array) -> None:
         """Constant operators: deformation gradients, weights and weighted modes of the averaged volume."""
-        points, _ = gauss_square(self.scheme.gauss)
-        b, _, _ = strain_operator(self.mesh.nodes / self.length, self.mesh.cells, points)
-        by_r, by_z, over = (b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
+        by_r, by_z, over = (self.b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
         angles = self.harmonics.angles
         values, turned = self.harmonics.values(angles), self.harmonics.turned(angles)
         groups = [FieldGroup(by_r, values), FieldGroup(by_z, values), FieldGroup(over, turned)]
         self._field = NodePairOperator(groups, self.mesh.cells, signs, self.harmonics)
-        self._share = (self._stiff_weight[:, None] / angles.size / self.mu).repeat(angles.size, axis=1).ravel()
+        self._share = (self.stiff_weight[:, None] / angles.size / self.mu).repeat(angles.size, axis=1).ravel()
         self._law = GradientLaw(self.material)
         self._cosines = self.harmonics.cosines(angles)
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.weight.shape
         shape = np.stack([by_r, by_z, over], axis=2).reshape(n_cells, 1, n_points, 3, -1)
-        tested = self._tested[:, :, :, None, None] * shape
+        tested = self.tested[:, :, :, None, None] * shape
         self._tested_shape = np.ascontiguousarray(
             np.moveaxis(tested, 4, 2).reshape(n_cells, tested.shape[1] * shape.shape[-1], -1)
         )
@@ -146,17 +144,17 @@ class HarmonicModel(SolidModel):
         volume = np.einsum("ni,ni->n", gradient[:, 0], cofactor[:, 0])
         if not volume.min() > 0.0:
             return PointFields(np.inf, f, f, f, f, f)
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.weight.shape
         change = (volume - 1.0).reshape(n_cells, n_points, -1)
-        content = np.matmul(np.matmul(self._tested, change), self._cosines.T)
-        stored = 0.5 * float(np.vdot(self._kappa * content, content))
-        pressure = self._pressure(content)
+        content = np.matmul(np.matmul(self.tested, change), self._cosines.T)
+        stored = 0.5 * float(np.vdot(self.kappa * content, content))
+        pressure = self.averaged_pressure(content)
         law = self._law.at(gradient, cofactor, volume, self._share)
         return HarmonicFields(law.energy + stored, gradient, volume, cofactor, content, f, law, pressure)
 
-    def _pressure(self, content: Array) -> Array:
+    def averaged_pressure(self, content: Array) -> Array:
         """Averaged pressure (n,), weighted, of a ``content`` (n_cells, n_modes, waves + 1)."""
-        by_content = np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content)
+        by_content = np.matmul(np.swapaxes(self.tested, 1, 2), self.kappa * content)
         return np.asarray(np.matmul(by_content, self._cosines)).ravel()
 
     def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
@@ -165,30 +163,30 @@ class HarmonicModel(SolidModel):
         swelling = self._swelling(before)
         grown = np.matmul(swelling, move[self.mesh.cells].reshape(len(swelling), -1, 1))
         expected = before.content + grown.reshape(before.content.shape)
-        return replace(here, pressure=here.pressure + self._pressure(expected - here.content))
+        return replace(here, pressure=here.pressure + self.averaged_pressure(expected - here.content))
 
     def forces(self, local: PointFields) -> Array:
         """Derivative of the stored energy by the coefficients of the cells, (n_cells, n_coefficients)."""
         assert isinstance(local, HarmonicFields)
         by_gradient = local.law.stress() + local.pressure[:, None, None] * local.basis
-        return self._field.forces(by_gradient.reshape(*self._weight.shape, -1, 9))
+        return self._field.forces(by_gradient.reshape(*self.weight.shape, -1, 9))
 
     def stiffness(self, local: PointFields) -> Array:
         """Second derivative of the energy by the coefficients of the cells, by node pairs: see `NodePairOperator`."""
         assert isinstance(local, HarmonicFields)
         form = local.law.moduli(local.pressure)
-        blocks = self._field.stiffness(form.reshape(*self._weight.shape, -1, 9, 9))
+        blocks = self._field.stiffness(form.reshape(*self.weight.shape, -1, 9, 9))
         swelling = self._swelling(local)
-        blocks += self._field.picked(np.matmul(np.swapaxes(self._kappa * swelling, 1, 2), swelling))
+        blocks += self._field.picked(np.matmul(np.swapaxes(self.kappa * swelling, 1, 2), swelling))
         return blocks
 
     def _swelling(self, local: PointFields) -> Array:
         """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes * (waves + 1), n_coefficients)."""
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.weight.shape
         cofactor = local.basis.reshape(n_cells * n_points, -1, 3, 3)
         along = [cofactor[:, :, k].reshape(n_cells * n_points, -1) @ waves for k, waves in enumerate(self._waves)]
         stacked = np.stack(along, axis=1).reshape(n_cells, 3 * n_points, -1)
-        modes, waves = self._tested.shape[1], self.harmonics.waves + 1
+        modes, waves = self.tested.shape[1], self.harmonics.waves + 1
         out = np.matmul(self._tested_shape, stacked).reshape(n_cells, modes, -1, waves, self.harmonics.columns)
         swelling = np.swapaxes(out, 2, 3).reshape(n_cells, modes * waves, -1)
         sign = self._sign[self.mesh.cells].reshape(n_cells, 1, -1)

@@ -144,27 +144,27 @@ class SolidModel:
         return sum((part.load(x) for part in self.supports), BaseLoad())
 
     def _integration(self) -> None:
-        """Constant operators: strains (`_b`, also as `_tall`), slopes of shapes, and weighted volume modes."""
+        """Constant operators: strains (``b``, also as `_tall`), slopes of shapes, and weighted volume modes."""
         points, weights = gauss_square(self.scheme.gauss)
         b, measure, position = strain_operator(self.rest, self.mesh.cells, points)
-        self._weight = measure * weights
+        self.weight = measure * weights
         self.relative = self.grade(position[..., 0], position[..., 1])
-        n_cells, n_points = self._weight.shape
-        self._b = np.ascontiguousarray(b)
-        self._tall = self._b.reshape(n_cells, n_points * 5, -1)
-        slopes = self._b[:, :, F_RR : F_RZ + 1, RADIAL].reshape(n_cells, 2 * n_points, -1)
+        n_cells, n_points = self.weight.shape
+        self.b = np.ascontiguousarray(b)
+        self._tall = self.b.reshape(n_cells, n_points * 5, -1)
+        slopes = self.b[:, :, F_RR : F_RZ + 1, RADIAL].reshape(n_cells, 2 * n_points, -1)
         self._slopes = np.ascontiguousarray(np.swapaxes(slopes, 1, 2))
         # The second derivatives of a / 2 and of j by cell positions are those of radial by radial, and by axial ones.
         self._bent = np.zeros((n_cells, n_points, 2, 2 * slopes.shape[2]))
         self._bent[..., RADIAL] = slopes.reshape(n_cells, n_points, 2, -1)
         self._bent[:, :, 0, AXIAL] = self._bent[:, :, 1, RADIAL]
         self._bent[:, :, 1, AXIAL] = -self._bent[:, :, 0, RADIAL]
-        modes = pressure_modes(points, self._weight, self.scheme.pressure)
-        self._tested = np.ascontiguousarray(modes * self._weight[:, None, :])
-        self._stiff_weight = (self.relative * self._weight).ravel()
+        modes = pressure_modes(points, self.weight, self.scheme.pressure)
+        self.tested = np.ascontiguousarray(modes * self.weight[:, None, :])
+        self.stiff_weight = (self.relative * self.weight).ravel()
         # The averaged volume belongs to a whole cell, and so does its bulk modulus.
-        mean = (self.relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
-        self._kappa = (self.material.bulk_ratio * mean)[:, None, None]
+        mean = (self.relative * self.weight).sum(axis=1) / self.weight.sum(axis=1)
+        self.kappa = (self.material.bulk_ratio * mean)[:, None, None]
 
     def expand(self, step: Array) -> Array:
         """Nodal displacement (n_nodes, 2) from the free unknowns (size,); 0 where fixed."""
@@ -174,7 +174,7 @@ class SolidModel:
 
     def local(self, x: Array) -> PointFields:
         """Strains, energy and energy derivatives at the integration points for positions x (n_nodes, 2)."""
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.weight.shape
         gathered = x[self.mesh.cells].reshape(n_cells, -1, 1)
         f = np.matmul(self._tall, gathered).reshape(-1, 5)
         rr, rz, zr, zz, h = np.ascontiguousarray(f.T)
@@ -182,10 +182,10 @@ class SolidModel:
         if not (j.min() > 0.0 and h.min() > 0.0):
             return PointFields(np.inf, f, f, f, f, f)
         a = rr * rr + rz * rz + zr * zr + zz * zz
-        jets = self.material.energy(Strain(a, j, h)).data * (self._stiff_weight / self.mu)
-        content = np.matmul(self._tested, (j * h - 1.0).reshape(n_cells, n_points, 1))
-        pressure = self._pressure(content)
-        energy = float(jets[VALUE].sum()) + 0.5 * float(np.vdot(self._kappa * content, content))
+        jets = self.material.energy(Strain(a, j, h)).data * (self.stiff_weight / self.mu)
+        content = np.matmul(self.tested, (j * h - 1.0).reshape(n_cells, n_points, 1))
+        pressure = self.averaged_pressure(content)
+        energy = float(jets[VALUE].sum()) + 0.5 * float(np.vdot(self.kappa * content, content))
         jets[BY_J] += pressure * h
         jets[BY_H] += pressure * j
         jets[BY_JH] += pressure
@@ -193,17 +193,17 @@ class SolidModel:
         basis[:, _A, IN_PLANE] = 2.0 * f[:, IN_PLANE]
         basis[:, _J, F_RR], basis[:, _J, F_RZ], basis[:, _J, F_ZR], basis[:, _J, F_ZZ] = zz, -zr, -rz, rr
         basis[:, _H, HOOP] = 1.0
-        by_cell = np.empty((n_cells, 3 * n_points + content.shape[1], self._b.shape[-1]))
+        by_cell = np.empty((n_cells, 3 * n_points + content.shape[1], self.b.shape[-1]))
         by_point, swelling = np.split(by_cell, [3 * n_points], axis=1)
-        np.matmul(basis.reshape(n_cells, n_points, 3, 5), self._b, out=by_point.reshape(n_cells, n_points, 3, -1))
-        tested = np.zeros((*self._tested.shape, 3))
-        tested[..., _J], tested[..., _H] = (self._tested * x.reshape(n_cells, 1, n_points) for x in (h, j))
+        np.matmul(basis.reshape(n_cells, n_points, 3, 5), self.b, out=by_point.reshape(n_cells, n_points, 3, -1))
+        tested = np.zeros((*self.tested.shape, 3))
+        tested[..., _J], tested[..., _H] = (self.tested * x.reshape(n_cells, 1, n_points) for x in (h, j))
         np.matmul(tested.reshape(n_cells, -1, 3 * n_points), by_point, out=swelling)
         return PointFields(energy, f, jets, basis, content, by_cell)
 
-    def _pressure(self, content: Array) -> Array:
+    def averaged_pressure(self, content: Array) -> Array:
         """Averaged pressure (n_points,), weighted, of a ``content`` (n_cells, n_modes, 1)."""
-        return np.asarray((self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content)).ravel())
+        return np.asarray((self.kappa * np.matmul(np.swapaxes(self.tested, 1, 2), content)).ravel())
 
     def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
         """Fields ``here`` for a tangent at the averaged pressure that the last Newton step expected, from the fields
@@ -214,26 +214,26 @@ class SolidModel:
         """
         swelling = before.by_cell[:, -before.content.shape[1] :]
         expected = before.content + np.matmul(swelling, move[self.mesh.cells].reshape(len(swelling), -1, 1))
-        pressure, jets = self._pressure(expected - here.content), here.jets.copy()
+        pressure, jets = self.averaged_pressure(expected - here.content), here.jets.copy()
         jets[BY_J] += pressure * here.strains[:, HOOP]
         jets[BY_JH] += pressure
         return replace(here, jets=jets)
 
     def forces(self, local: PointFields) -> Array:
         """Derivative of the stored energy by cell positions, (n_cells, 2 n_nodes)."""
-        gradient = np.ascontiguousarray(local.jets[GRADIENT].T).reshape(self._weight.shape[0], 1, -1)
+        gradient = np.ascontiguousarray(local.jets[GRADIENT].T).reshape(self.weight.shape[0], 1, -1)
         return np.asarray(np.matmul(gradient, local.by_cell[:, : gradient.shape[2]])[:, 0])
 
     def stiffness(self, local: PointFields) -> Array:
         """Second derivative of the stored energy by cell positions, (n_cells, 2 n_nodes, 2 n_nodes)."""
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.weight.shape
         jets, by_cell, last = local.jets, local.by_cell, 3 * n_points
         # Small products are twice as fast if their factors are contiguous.
         hessian = np.ascontiguousarray(jets[np.ravel(HESSIAN)].T).reshape(n_cells, n_points, 3, 3)
         forms = np.empty_like(by_cell)
         cells = n_cells, n_points, 3, by_cell.shape[2]
         np.matmul(hessian, by_cell[:, :last].reshape(cells), out=forms[:, :last].reshape(cells))
-        np.multiply(self._kappa, by_cell[:, last:], out=forms[:, last:])
+        np.multiply(self.kappa, by_cell[:, last:], out=forms[:, last:])
         out = np.matmul(np.swapaxes(by_cell, 1, 2), forms)
         weight = np.stack([2.0 * jets[BY_A], jets[BY_J]], axis=1).reshape(n_cells, n_points, 1, 1, 2)
         bent = (self._bent.reshape(n_cells, n_points, 2, -1, 2) * weight).reshape(n_cells, 2 * n_points, -1)

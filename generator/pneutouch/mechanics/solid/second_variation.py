@@ -18,6 +18,7 @@ from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_AH, BY_HH, BY_J, BY_JH, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
 from pneutouch.mechanics.solid.elements import (
+    AXIAL,
     F_RR,
     F_RZ,
     F_ZR,
@@ -26,10 +27,7 @@ from pneutouch.mechanics.solid.elements import (
     IN_PLANE,
     RADIAL,
     area_ratio,
-    gauss_square,
     line_shapes,
-    pressure_modes,
-    strain_operator,
 )
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
@@ -187,16 +185,8 @@ class HarmonicSolid:
     def __init__(self, solid: SolidModel) -> None:
         self.solid = solid
         mesh = solid.mesh
-        points, weights = gauss_square(solid.scheme.gauss)
-        b, measure, position = strain_operator(solid.rest, mesh.cells, points)
-        self._weight = measure * weights
-        relative = solid.grade(position[..., 0], position[..., 1])
-        self._relative = (relative * self._weight).ravel()
-        mean = (relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
-        self._kappa = (solid.material.bulk_ratio * mean)[:, None, None]
-        self._tested = pressure_modes(points, self._weight, solid.scheme.pressure) * self._weight[:, None, :]
-        n_cells, n_points = self._weight.shape
-        gradients = [b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP)]
+        n_cells, n_points = solid.weight.shape
+        gradients = [solid.b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP)]
         self._gradient = np.stack(gradients, axis=2)
         self._tall = self._gradient.reshape(n_cells, 3 * n_points, -1)
         self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
@@ -258,7 +248,7 @@ class HarmonicSolid:
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
         """Second variation of the wall's stored energy by cells."""
-        d, n_cells = self._shears(local), self._weight.shape[0]
+        d, n_cells = self._shears(local), self.solid.weight.shape[0]
         constant = with_around(self.solid.stiffness(local))
         nodes = constant.shape[1]
         linear, square = empty_blocks(n_cells, nodes), empty_blocks(n_cells, nodes)
@@ -281,17 +271,14 @@ class HarmonicSolid:
 
     def _product(self, form: Array) -> Array:
         """Blocks (n_cells, n, n) from a bilinear form of the gradients of two displacements, (n_points, 3, 3)."""
-        n_cells, n_points = self._weight.shape
+        n_cells, n_points = self.solid.weight.shape
         moved = np.matmul(form.reshape(n_cells, n_points, 3, 3), self._gradient)
         return np.asarray(np.matmul(self._wide, moved.reshape(n_cells, 3 * n_points, -1)))
 
     def _shears(self, local: PointFields) -> Array:
         """Weighted Hessian by the shears, nondimensional, with the averaged pressure; (n_points, 4, 4)."""
-        n_cells, n_points = self._weight.shape
-        change = (area_ratio(local.strains) * local.strains[:, HOOP] - 1.0).reshape(n_cells, n_points, 1)
-        content = np.matmul(self._tested, change)
-        pressure = (self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content)).ravel()
-        scale = self._relative / self.solid.mu
+        pressure = self.solid.averaged_pressure(local.content)
+        scale = self.solid.stiff_weight / self.solid.mu
         moduli = shear_moduli(self.solid.material, local.strains, pressure / scale)
         return np.asarray(moduli * scale[:, None, None])
 
@@ -311,26 +298,11 @@ class HarmonicSolid:
 
     def _add_swelling(self, local: PointFields, linear: Array, square: Array) -> None:
         """Add, in place, the part of the averaged volume's stiffness that involves c."""
-        n_cells, n_points = self._weight.shape
-        nodes = linear.shape[1]
-        area = area_ratio(local.strains)
-        in_plane = local.basis[:, 1, IN_PLANE] * local.strains[:, HOOP:]
-        by_a = np.stack([in_plane[:, F_RR], in_plane[:, F_RZ], area], axis=1)
-        by_b = np.stack([in_plane[:, F_ZR], in_plane[:, F_ZZ]], axis=1)
-        tested = self._tested[..., None]
-        swell_a, swell_b, swell_c = (
-            np.matmul(
-                (tested * values.reshape(n_cells, 1, n_points, -1)).reshape(n_cells, tested.shape[1], -1),
-                self._gradient[:, :, rows].reshape(n_cells, -1, nodes),
-            )
-            for values, rows in (
-                (by_a, slice(None)),
-                (by_b, slice(_BY_R, _OVER_R)),
-                (area[:, None], slice(_OVER_R, None)),
-            )
-        )
-        stiff = self._kappa * swell_c
-        for field, swell in ((IN_R, swell_a), (IN_Z, swell_b)):
+        solid, swelling = self.solid, local.by_cell[:, -local.content.shape[1] :]
+        area = area_ratio(local.strains).reshape(solid.weight.shape[0], 1, -1)
+        swell_c = np.matmul(solid.tested * area, self._over)
+        stiff = solid.kappa * swell_c
+        for field, swell in ((IN_R, swelling[..., RADIAL]), (IN_Z, swelling[..., AXIAL])):
             block = np.matmul(np.swapaxes(swell, 1, 2), stiff)
             linear[:, :, field, :, AROUND] += block
             linear[:, :, AROUND, :, field] += np.swapaxes(block, 1, 2)
