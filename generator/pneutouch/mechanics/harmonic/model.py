@@ -48,7 +48,7 @@ class HarmonicFace(BaseFace):
         radius = np.hypot(place[..., X], place[..., Y])
         return BaseMeeting(radius, traction, under.slope, under.curve) if traction.any() else None
 
-    def force(self, meeting: BaseMeeting) -> Array:
+    def lift(self, meeting: BaseMeeting) -> Array:
         """Derivative of the energy by edge coefficients, (n_edges, n * columns) for n nodes of an edge."""
         return self._operator.forces(-(self.weight * meeting.traction)[..., None] * upward(meeting.slope))
 

@@ -151,8 +151,7 @@ class HarmonicContact(Contact):
         under = plate.over(place[..., X], place[..., Y])
         gap = under.height - place[..., Z]
         traction = np.maximum(-self.stiffness * gap, 0.0)
-        energy = float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
-        return ContactEvaluation(energy, traction, gap, under.slope, under.curve)
+        return ContactEvaluation(self.energy(traction), traction, gap, under.slope, under.curve)
 
     def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
         """Gaps after a displacement of the coefficients, linearised; ``lift`` is the gap before it."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from pneutouch.mechanics.prediction import (
 )
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import RigidBase, Sensor
-from pneutouch.mechanics.solid.continuation import PathGuide
+from pneutouch.mechanics.solid.continuation import PlateState
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells
@@ -48,6 +48,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.object_contact import PressedFace
+    from pneutouch.mechanics.harmonic.press import OffAxisState
 
 _SUMMARY = (
     f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
@@ -71,7 +72,7 @@ class SolidElements(SensorModel):
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers of `solid_result`, one sensor at a time: the paths of each guide those of the next."""
-        guides: dict[float, PathGuide] = {}
+        guides: _Paths = {}
         press = partial(_state, guides=guides)
         return one_by_one(lambda *one: ModelAnswer(solid_result(*one, pressed_state=press)), sensors, driving_pressures)
 
@@ -143,23 +144,8 @@ KINDS = {
 """Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 
-class _CurvePoint(Protocol):
-    """A solved state of a press with its slopes; mm, N, MPa. See `indent.PressState`."""
-
-    @property
-    def indentation(self) -> float: ...
-
-    @property
-    def force(self) -> float: ...
-
-    @property
-    def rise(self) -> float: ...
-
-    @property
-    def stiffness(self) -> float: ...
-
-    @property
-    def slope(self) -> float: ...
+_Paths = dict[float, Sequence[PlateState]]
+"""Solved states of presses by driving pressure, MPa."""
 
 
 def solid_result(
@@ -292,14 +278,14 @@ def press_settings(sensor: Sensor) -> PressSettings:
 
 
 def _state(
-    sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float, guides: dict[float, PathGuide] | None = None
+    sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float, guides: _Paths | None = None
 ) -> SensorState:
     """State at a driving pressure (MPa); its path is led by that in ``guides`` at this pressure, and replaces it."""
     free = state_at(probe.solid, pressure, run)
     test, press = sensor.protocol, press_settings(sensor)
-    pressed = indent(probe.solid, free, press, probe, (guides or {}).get(pressure))
-    if guides is not None and pressed.guide is not None:
-        guides[pressure] = pressed.guide
+    pressed = indent(probe.solid, free, press, probe, (guides or {}).get(pressure, ()))
+    if guides is not None:
+        guides[pressure] = pressed.solved
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
@@ -335,11 +321,11 @@ def reported_events(events: list[SolidEvent]) -> list[Event]:
     return sorted(reported, key=lambda event: event.indentation)
 
 
-def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Array]:
+def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Array) -> tuple[Array, Array]:
     """Force (N) and pressure rise (MPa) at indentations ``grid`` (n,; mm), on Hermite cubics through solved states."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
-    x, states = x[keep], [s for s, k in zip(path, keep, strict=True) if k]
+    x, states = x[keep], [path[k] for k in np.flatnonzero(keep)]
     force, rise = np.array([s.force for s in states]), np.array([s.rise for s in states])
     stiffness = np.array([s.stiffness for s in states])
     rate = np.nan_to_num(np.array([s.slope for s in states])) * stiffness

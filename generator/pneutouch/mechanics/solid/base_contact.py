@@ -6,13 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Index
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.banded import FaceSums
-from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, TermState, line_shapes
-from pneutouch.mechanics.solid.object_contact import Contact
-
-_POINTS = 3
-"""Number of quadrature points of an edge, as many as for the contact with the plate."""
+from pneutouch.mechanics.solid.elements import TermState
+from pneutouch.mechanics.solid.object_contact import Contact, FacePoints
 
 
 @dataclass(frozen=True)
@@ -48,11 +45,11 @@ class BaseContact:
         outer, inner = self.outer.meet(x), self.inner.meet(x)
         energy, gradient = 0.0, np.zeros(self._faces.outer.size)
         if outer is not None:
-            energy += self.outer.energy(outer)
-            gradient = self._faces.push(self.outer.force(outer))
+            energy += self.outer.energy(outer.traction)
+            gradient = self._faces.push(self.outer.lift(outer))
         if inner is not None:
-            energy += self.inner.energy(inner)
-            gradient = gradient + self._faces.swell(self.inner.force(inner))
+            energy += self.inner.energy(inner.traction)
+            gradient = gradient + self._faces.swell(self.inner.lift(inner))
         return TermState(
             energy,
             gradient,
@@ -85,31 +82,24 @@ class BaseMeeting:
     curve: Array
 
 
-class BaseFace:
+class BaseFace(FacePoints):
     """The quadrature points of one face of the wall, and the base that they can meet: flat from the radius ``start``
     outward, with a ring that begins at radius ``ring[0]`` and rises to ``ring[1]``; R0."""
 
     def __init__(
         self, edges: Index, rest: Array, contact: Contact, start: float, ring: tuple[float, float] = (0.0, 0.0)
     ) -> None:
-        self.edges, self.start, self.stiffness = edges, start, contact.stiffness
+        super().__init__(edges, rest, contact.stiffness)
+        self.start = start
         self._ring, self.high = ring
-        x, w = np.polynomial.legendre.leggauss(_POINTS)
-        self.shape, slope = line_shapes(x, edges.shape[1])
-        line = rest[edges]
-        measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
-        self.weight = 2.0 * np.pi * (line[..., 0] @ self.shape.T) * measure
-        self._pairs = (self.shape[:, :, None] * self.shape[:, None, :]).reshape(_POINTS, -1)
         # Edges and corners of the base are as round as the longest cell, as the rim of a plate is.
         self._rim = contact.longest
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
         """Contact at positions (n_nodes, 2); None if no point is below the base's surface."""
-        line = nodes[self.edges]
-        z = line[..., 1] @ self.shape.T
+        r, z = self.positions(nodes)
         if z.min() >= self.high:
             return None
-        r = line[..., 0] @ self.shape.T
         height, slope, curve = self.surface(r)
         traction = np.maximum(self.stiffness * (height - z), 0.0)
         return BaseMeeting(r, traction, slope, curve) if traction.any() else None
@@ -127,34 +117,14 @@ class BaseFace:
                 curve = curve + sign * np.where((along > 0.0) & (along < 1.0), 1.0 / rim, 0.0)
         return height, slope, curve
 
-    def energy(self, meeting: BaseMeeting) -> float:
-        """Energy of the contact, mu R0^3."""
-        return float(np.vdot(self.weight, meeting.traction**2)) / (2.0 * self.stiffness)
-
-    def force(self, meeting: BaseMeeting) -> Array:
+    def lift(self, meeting: BaseMeeting) -> Array:
         """Derivative of the energy by edge positions, (n_edges, 2 n)."""
-        load = self.weight * meeting.traction
-        out = np.empty((load.shape[0], 2 * self.edges.shape[1]))
-        out[:, AXIAL] = -load @ self.shape
-        out[:, RADIAL] = (load * meeting.slope) @ self.shape
-        return out
+        return -self.force(meeting.traction, meeting.slope)
 
     def hessian(self, meeting: BaseMeeting) -> Array:
         """Second derivative of the energy by edge positions, (n_edges, 2 n, 2 n)."""
-        touching: Flags = meeting.traction > 0.0
-        stiff = np.where(touching, self.stiffness, 0.0) * self.weight
-        n = self.edges.shape[1]
-        out = np.zeros((stiff.shape[0], 2 * n, 2 * n))
-        out[:, AXIAL, AXIAL] = (stiff @ self._pairs).reshape(-1, n, n)
-        if meeting.slope[touching].any():
-            across = -((stiff * meeting.slope) @ self._pairs).reshape(-1, n, n)
-            out[:, RADIAL, AXIAL], out[:, AXIAL, RADIAL] = across, across
-            along = stiff * meeting.slope**2 + self.weight * meeting.traction * meeting.curve
-            out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
-        return out
+        return self.stiffened(meeting.traction > 0.0, meeting.slope, meeting.traction * meeting.curve)
 
     def around(self, meeting: BaseMeeting) -> Array:
         """Second derivative of the energy by displacements around the axis, (n_edges, n, n)."""
-        load = self.weight * meeting.traction * meeting.slope / np.maximum(meeting.radius, 1.0e-300)
-        n = self.edges.shape[1]
-        return np.asarray((load @ self._pairs).reshape(-1, n, n))
+        return self.across(meeting.traction * meeting.slope / np.maximum(meeting.radius, 1.0e-300))

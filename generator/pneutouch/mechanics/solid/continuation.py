@@ -5,6 +5,7 @@ Each step extrapolates, solves, checks stability, and is cut if it fails. Plate 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
 LONGEST = 0.06
 _SHORTEST = 1.0e-4
-#: Travels that differ by less than this, in R0, are the same step of two paths.
-_SAME = 1.0e-9
 #: Accuracy, as a share, of the work of the first step, where contact begins at a point.
 _FIRST_STEP = 0.06
 #: A step that loses more than this share of a full step's work has left its branch.
@@ -111,26 +110,17 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     return max(0.0, share - allowance)
 
 
-@dataclass(frozen=True)
-class PathGuide:
-    """Errors of extrapolation along the path of a dome on a mesh with the same cells: travel (n,) to each state, R0,
-    and the displacements (n, n_nodes, 2) by which its extrapolation fell short."""
-
-    travel: Array
-    missed: Array
-
-
 class PathFollower:
     """The states of a path, and steps to further plate heights, from first contact on; heights in R0.
 
-    ``guide``: that of a similar dome, whose extrapolation errs alike where the steps are the same; None: no guide.
+    ``guide``: path of a similar dome on the same cells, whose extrapolation errs alike where the steps are the same.
     """
 
     #: 1 while the plate comes down, -1 while it goes up.
     down = 1.0
 
     def __init__(
-        self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, guide: PathGuide | None = None
+        self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, guide: Sequence[PlateState] = ()
     ) -> None:
         self._solid, self._plate, self._guide = solid, plate, guide
         self.path = [self._first(SolidScene(solid, supply, plate), start)]
@@ -196,21 +186,17 @@ class PathFollower:
         """State of least energy near positions x (n_nodes, 2), or the failure."""
         return minimise(scene, x)
 
-    def guide(self) -> PathGuide:
-        """Guide for the path of a similar dome."""
-        before, missed = copy(self), [np.zeros_like(self.here.state.x)]
-        for k, state in enumerate(self.path[1:], 1):
-            before.path = self.path[:k]
-            missed.append(state.state.x - before._turning(state.height))
-        return PathGuide(self.path[0].height - np.array([state.height for state in self.path]), np.stack(missed))
-
     def _expected_miss(self, height: float) -> Array | float:
         """Displacements (n_nodes, 2) by which extrapolation will fall short, by the guide; 0 if it has no such step."""
         guide, ahead = self._guide, len(self.path)
-        if guide is None or ahead >= guide.travel.size or guide.missed[0].shape != self.here.state.x.shape:
+        if ahead >= len(guide) or guide[0].state.x.shape != self.here.state.x.shape:
             return 0.0
-        step = self.path[0].height - np.array([self.here.height, height])
-        return guide.missed[ahead] if np.abs(guide.travel[ahead - 1 : ahead + 1] - step).max() < _SAME else 0.0
+        pairs = ((guide[ahead - 1].height, self.here.height), (guide[ahead].height, height))
+        if any(abs(guide[0].height - a - (self.path[0].height - b)) > 1.0e-9 for a, b in pairs):
+            return 0.0
+        other = copy(self)
+        other.path = [*guide[:ahead]]
+        return np.asarray(guide[ahead].state.x - other._turning(guide[ahead].height))
 
     def _extrapolate(self, height: float) -> Array:
         """Positions extrapolated along the path's tangent; at first contact those of the last state."""

@@ -12,9 +12,9 @@ import numpy as np
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.banded import FaceSums
 from pneutouch.mechanics.solid.base_contact import BaseLoad
-from pneutouch.mechanics.solid.elements import TermState, line_shapes
+from pneutouch.mechanics.solid.elements import TermState
 from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, cell_counts, graded, grid_cells, with_middles
-from pneutouch.mechanics.solid.object_contact import Contact
+from pneutouch.mechanics.solid.object_contact import Contact, FacePoints
 from pneutouch.shape.dome import DomeShape
 
 _CELLS_PER_WALL = 2
@@ -79,7 +79,6 @@ def _merge(blocks: list[Array], gap: float) -> tuple[Array, Index, Index]:
     return points[kept], np.concatenate(cells).astype(np.intp), number[: starts[1]].astype(np.intp)
 
 
-_FLANGE_POINTS = 3
 _ROOT_STEPS = 30
 _ROOT = 1.0e-14
 
@@ -120,13 +119,9 @@ class FlangeContact:
     noise = 0.0
 
     def __init__(self, meeting: Index, rest: Array, contact: Contact, faces: FaceSums) -> None:
-        self._faces, self._stiffness = faces, contact.stiffness
-        self._edges, self._top = meeting[:, :3], meeting[0, 3:]
-        x, w = np.polynomial.legendre.leggauss(_FLANGE_POINTS)
-        self._shape, slope = line_shapes(x, 3)
-        line = rest[self._edges]
-        measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
-        self._weight = 2.0 * np.pi * (line[..., 0] @ self._shape.T) * measure
+        self._faces, self._stiffness, self._top = faces, contact.stiffness, meeting[0, 3:]
+        self._wall = FacePoints(meeting[:, :3], rest, contact.stiffness)
+        self._shape, self._weight = self._wall.shape, self._wall.weight
         self._spline = cardinal_splines(self._top.size)
 
     def at(self, x: Array) -> TermState:
@@ -134,7 +129,6 @@ class FlangeContact:
         met = self._meet(x)
         if met is None:
             return TermState(0.0, np.zeros(self._faces.outer.size))
-        energy = float(np.vdot(self._weight, met.traction**2)) / (2.0 * self._stiffness)
         n, first, second = evaluated(self._spline, met.place)
         r, z = x[self._top].T
         speed = first @ r
@@ -145,7 +139,11 @@ class FlangeContact:
         stiff = np.where(met.traction > 0.0, self._stiffness * self._weight, 0.0)
         blocks = np.einsum("eq,eqi,eqk->eik", stiff, by_gap, by_gap)
         blocks -= np.einsum("eq,eqik->eik", load, self._curvature(tilt, bend, n, first / speed[..., None]))
-        return TermState(energy, self._faces.folded(-np.einsum("eq,eqi->ei", load, by_gap)), fold_blocks=blocks)
+        return TermState(
+            self._wall.energy(met.traction),
+            self._faces.folded(-np.einsum("eq,eqi->ei", load, by_gap)),
+            fold_blocks=blocks,
+        )
 
     def load(self, x: Array) -> BaseLoad:
         """Load of the wall on the flange at positions x (n_nodes, 2)."""
@@ -157,8 +155,8 @@ class FlangeContact:
 
     def _meet(self, x: Array) -> _Touch | None:
         """Contact at positions x (n_nodes, 2); None if no point of the wall is below the flange's top."""
-        line, top = x[self._edges], x[self._top]
-        r, z = line[..., 0] @ self._shape.T, line[..., 1] @ self._shape.T
+        top = x[self._top]
+        r, z = self._wall.positions(x)
         # A spline rises over its highest node by less than its nodes differ.
         if z.min() > top[:, 1].max() + np.ptp(top[:, 1]):
             return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -23,7 +24,7 @@ from pneutouch.mechanics.events import (
     crossing,
 )
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.continuation import PathFollower, PathGuide, PathJump, PlateState, descend
+from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
@@ -117,15 +118,15 @@ class PressState:
 class IndentationPath:
     """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached. ``guide``:
-    for a press of a similar dome.
+    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached. ``solved``:
+    the solver's states, a guide for `indent`.
     """
 
     states: list[PressState]
     path: list[PressState]
     events: list[SolidEvent]
     complete: bool
-    guide: PathGuide | None = None
+    solved: Sequence[PlateState] = ()
 
     def column(self, name: str) -> Array:
         """The field ``name`` of every state, (n_states,)."""
@@ -144,10 +145,10 @@ def indent(
     free: FreeState,
     press: PressSettings,
     probe: StrainProbe | None = None,
-    guide: PathGuide | None = None,
+    guide: Sequence[PlateState] = (),
 ) -> IndentationPath:
     """Shut in the gas at a free state and lower the plate; presses of one solid can share a ``probe``, None: a new one.
-    ``guide``: that of a press without friction on a similar dome, which saves Newton steps.
+    ``guide``: solved states of a press without friction of a similar dome, which save Newton steps.
 
     `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
     there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
@@ -168,11 +169,11 @@ def indent(
         if jump is not None or _ended(events, solid):
             break
     events += recorder.losses(follower.path[: len(states)], press.waves)
-    return replace(_finish(states, events, jump, recorder, press), guide=follower.guide())
+    return replace(_finish(states, events, jump, recorder, press), solved=follower.path)
 
 
 def follower_of(
-    solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch, guide: PathGuide | None = None
+    solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch, guide: Sequence[PlateState] = ()
 ) -> PathFollower:
     """Path follower of a press, at the first contact ``touch``, with the gas shut in; ``guide`` as in `indent`."""
     gas = shut_in(solid, free, press)

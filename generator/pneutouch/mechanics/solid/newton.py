@@ -313,7 +313,9 @@ def minimise(
         size = float(np.linalg.norm(state.residual))
         if size <= RESIDUAL * state.scale and left <= GAIN * (state.local.energy + state.scale * scene.solid.wall):
             return NewtonResult(state, iteration)
-        newton = find(scene, state if before is None else _mixed(scene, before, state))
+        if before is not None:
+            mixed = scene.solid.mixed(before.local, state.local, state.x - before.x)
+        newton = find(scene, state if before is None else replace(state, local=mixed))
         slope = float(newton.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
             newton = downhill(state, full_tangent(scene, state), state.residual)
@@ -328,11 +330,6 @@ def minimise(
     return NewtonFailure(
         f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
     )
-
-
-def _mixed(scene: SolidScene, before: SolverState, here: SolverState) -> SolverState:
-    """The state ``here`` for a tangent with the averaged pressure that the step from ``before`` expected."""
-    return replace(here, local=scene.solid.mixed(before.local, here.local, here.x - before.x))
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:

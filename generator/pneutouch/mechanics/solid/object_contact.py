@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, line_shapes
 from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 
@@ -93,8 +93,64 @@ class ContactEvaluation:
     curve: Array
 
 
-class Contact:
-    """Contact energy (k/2) sum w <-g>^2: k stiffness, g vertical gap, <-g> penetration, w area of a point at rest.
+class FacePoints:
+    """Quadrature points of edges of a face, with a contact energy (k/2) sum w <-g>^2: k ``stiffness``, g vertical gap,
+    <-g> penetration, w ``weight`` (n_edges, n_points), area of a point at rest. ``shape`` and ``slope`` (n_points, n):
+    values and derivatives of the shape functions of an edge's n nodes. ``rest``: positions (n_nodes, 2)."""
+
+    def __init__(self, edges: Index, rest: Array, stiffness: float, points: int = 3) -> None:
+        self.edges, self.stiffness = edges, stiffness
+        x, w = np.polynomial.legendre.leggauss(points)
+        self.shape, self.slope = line_shapes(x, edges.shape[1])
+        line = rest[edges]
+        measure = np.hypot(line[..., 0] @ self.slope.T, line[..., 1] @ self.slope.T) * w
+        self.weight = 2.0 * np.pi * self.positions(rest)[0] * measure
+        self._pairs = (self.shape[:, :, None] * self.shape[:, None, :]).reshape(points, -1)
+
+    def positions(self, nodes: Array) -> tuple[Array, Array]:
+        """Coordinates r and z, (n_edges, n_points) each, of the quadrature points for nodal values (n_nodes, 2)."""
+        line = nodes[self.edges]
+        return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
+
+    def energy(self, traction: Array) -> float:
+        """Energy of the contact for given tractions, nondimensional."""
+        return float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
+
+    def force(self, traction: Array, slope: Array) -> Array:
+        """Derivative of the energy by edge positions, (n_edges, 2 n), for tractions from above on the given slopes."""
+        load = self.weight * traction
+        out = np.empty((load.shape[0], 2 * self.shape.shape[1]))
+        out[:, AXIAL] = load @ self.shape
+        out[:, RADIAL] = -(load * slope) @ self.shape
+        return out
+
+    def stiffened(self, active: Flags, slope: Array, bend: Array) -> Array:
+        """Second derivative of the energy, (n_edges, 2 n, 2 n), if the `active` points (n_edges, n_points) touch a
+        surface with the given slopes; ``bend``: force down on it times its second derivative, per area at rest."""
+        stiff = np.where(active, self.stiffness, 0.0)
+        parts = [(AXIAL, AXIAL, stiff)]
+        if slope.any():
+            across = -stiff * slope
+            parts += [(RADIAL, AXIAL, across), (AXIAL, RADIAL, across), (RADIAL, RADIAL, stiff * slope**2 + bend)]
+        return self.blocks(parts)
+
+    def blocks(self, parts: list[tuple[slice, slice, Array]]) -> Array:
+        """Stiffness of the edges (n_edges, 2 n, 2 n) from ``parts``: direction of a traction, direction of the
+        displacement that causes it, and the points' stiffness per area at rest (n_edges, n_points)."""
+        n = self.shape.shape[1]
+        out = np.zeros((self.weight.shape[0], 2 * n, 2 * n))
+        for rows, columns, value in parts:
+            out[:, rows, columns] = self.across(value)
+        return out
+
+    def across(self, value: Array) -> Array:
+        """Stiffness of the edges (n_edges, n, n) for one direction, from that per area at rest (n_edges, n_points)."""
+        n = self.shape.shape[1]
+        return np.asarray(((self.weight * value) @ self._pairs).reshape(-1, n, n))
+
+
+class Contact(FacePoints):
+    """Contact of an object with the outer wall.
 
     A stiff penalty: the Newton step settles the contact inside its quadratic model (`newton.direction`), so the cost
     does not depend on k, and k is large enough for the penetration traction/k to be negligible.  The energy is once
@@ -102,26 +158,11 @@ class Contact:
     """
 
     def __init__(self, mesh: SolidMesh, nodes: Array, stiffness: float, points: int = 3) -> None:
-        self.edges = mesh.outer
-        self.stiffness = stiffness
-        x, w = np.polynomial.legendre.leggauss(points)
-        self.shape, slope = line_shapes(x, mesh.outer.shape[1])
-        self.slope = slope
-        line = nodes[mesh.outer]
-        radius = line[..., 0] @ self.shape.T
-        self.weight = 2.0 * np.pi * radius * np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
+        super().__init__(mesh.outer, nodes, stiffness, points)
         # Force due to rounding of the gap; no residual can fall below it.
         self.noise = float(np.finfo(np.float64).eps * stiffness * np.linalg.norm(self.weight))
+        line = nodes[mesh.outer]
         self.longest = float(np.hypot(*(line[:, END] - line[:, START]).T).max())
-        n = 2 * mesh.outer.shape[1]
-        self._n = n
-        pairs = self.shape[:, :, None] * self.shape[:, None, :]
-        self._pairs = pairs.reshape(points, -1)
-
-    def positions(self, nodes: Array) -> tuple[Array, Array]:
-        """Coordinates r and z, (n_edges, n_points) each, of the quadrature points for nodal values (n_nodes, 2)."""
-        line = nodes[self.edges]
-        return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
 
     def outline(self, nodes: Array, points: int = 9) -> tuple[Array, Array]:
         """Coordinates r and z at ``points`` of every outer edge, ends included, (n_edges * points,) each."""
@@ -135,8 +176,7 @@ class Contact:
         under, slope, curve = plate.underside(r)
         gap = under - z
         traction = np.maximum(-self.stiffness * gap, 0.0)
-        energy = float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
-        return ContactEvaluation(energy, traction, gap, slope, curve)
+        return ContactEvaluation(self.energy(traction), traction, gap, slope, curve)
 
     def linear(self, touch: ContactEvaluation, move: Array) -> Array:
         """Tractions after a nodal displacement `move` (n_nodes, 2) with linearised gaps; negative for open gaps."""
@@ -164,35 +204,9 @@ class Contact:
         before = past - 1
         return float(at[before] - slope[before] * (at[past] - at[before]) / (slope[past] - slope[before]))
 
-    def force(self, traction: Array, slope: Array) -> Array:
-        """Derivative of the contact energy by edge positions, (n_edges, 2 n), for given tractions and slopes."""
-        load = self.weight * traction
-        out = np.empty((load.shape[0], self._n))
-        out[:, AXIAL] = load @ self.shape
-        out[:, RADIAL] = -(load * slope) @ self.shape
-        return out
-
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
         """Second derivative of the energy, (n_edges, 2 n, 2 n), if the `active` points (n_edges, n_points) touch."""
-        stiff = np.where(active, self.stiffness, 0.0) * self.weight
-        n = self._n // 2
-        out = np.zeros((stiff.shape[0], self._n, self._n))
-        out[:, AXIAL, AXIAL] = (stiff @ self._pairs).reshape(-1, n, n)
-        if touch.slope.any():
-            across = -((stiff * touch.slope) @ self._pairs).reshape(-1, n, n)
-            out[:, RADIAL, AXIAL], out[:, AXIAL, RADIAL] = across, across
-            along = stiff * touch.slope**2 - self.weight * touch.traction * touch.curve
-            out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
-        return out
-
-    def blocks(self, parts: list[tuple[slice, slice, Array]]) -> Array:
-        """Stiffness of the edges (n_edges, 2 n, 2 n) from ``parts``: direction of a traction, direction of the
-        displacement that causes it, and the points' stiffness per area at rest (n_edges, n_points)."""
-        n = self._n // 2
-        out = np.zeros((self.weight.shape[0], self._n, self._n))
-        for rows, columns, value in parts:
-            out[:, rows, columns] = ((self.weight * value) @ self._pairs).reshape(-1, n, n)
-        return out
+        return self.stiffened(active, touch.slope, -touch.traction * touch.curve)
 
     def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> Footprint:
         """Edges of the contact, largest pressure, and largest gap between wall and object inside the contact.

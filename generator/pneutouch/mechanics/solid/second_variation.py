@@ -104,8 +104,7 @@ def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
     around = None
     if touch.slope.any():
         radius = np.maximum(contact.positions(state.x)[0], 1.0e-300)
-        load = -contact.weight * touch.traction * touch.slope / radius
-        around = np.einsum("eq,qi,qk->eik", load, contact.shape, contact.shape)
+        around = contact.across(-touch.traction * touch.slope / radius)
     constant = with_around(contact.hessian(touch, touch.traction > 0.0), around)
     return block_family((constant, empty, empty.copy()))
 
@@ -219,19 +218,14 @@ class HarmonicSolid:
         and their rows and columns have only a large diagonal. The trapped gas adds nothing: such displacements keep the
         volume to first order.
         """
-        families, constant = self.blocks(state), None
+        families, parts = self.blocks(state), ("constant", "linear", "square")
+        constant, linear, square = (self._assembled([getattr(f, part) for f in families]) for part in parts)
         out = {}
         for n in numbers:
-            if len(numbers) == 1:
-                out[n] = self._assembled([family.at(n) for family in families])
-            else:
-                if constant is None:
-                    names = ("constant", "linear", "square")
-                    constant, linear, square = (self._assembled([getattr(f, p) for f in families]) for p in names)
-                out[n] = n * square
-                out[n] += linear
-                out[n] *= n
-                out[n] += constant
+            out[n] = n * square
+            out[n] += linear
+            out[n] *= n
+            out[n] += constant
             if n > 1:
                 _fix(out[n], self._on_axis)
         return out
