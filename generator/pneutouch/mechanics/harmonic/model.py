@@ -17,7 +17,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.harmonic.fields import AXIAL, FieldGroup, Harmonics
 from pneutouch.mechanics.harmonic.material import GradientLaw, HarmonicCavity, LawFields, NodePairOperator
-from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, face_operator, upward
+from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, face_operator, space_form, upward
 from pneutouch.mechanics.harmonic.surface import revolved
 from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import lapack
@@ -26,6 +26,7 @@ from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.newton import NewtonDirection, SolidScene, SolverState, downhill, tangent, with_contact
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation
+from pneutouch.mechanics.solid.second_variation import ranked_numbers
 
 
 class HarmonicFace(BaseFace):
@@ -54,11 +55,9 @@ class HarmonicFace(BaseFace):
 
     def hessian(self, meeting: BaseMeeting) -> Array:
         """Second derivative of the energy by edge coefficients, (n_edges, n * columns, n * columns)."""
-        normal = upward(meeting.slope)
         stiff = np.where(meeting.traction > 0.0, self.stiffness, 0.0) * self.weight
-        form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
-        form[..., :Z, :Z] += (self.weight * meeting.traction)[..., None, None] * meeting.curve
-        return self._operator.stiffness(form)
+        load = self.weight * meeting.traction
+        return self._operator.stiffness(space_form(stiff, meeting.slope, load, meeting.curve))
 
 
 @dataclass(frozen=True)
@@ -210,10 +209,7 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
     for column in axial:
         free[mesh.sliding, column] = False
     free[mesh.clamped] = False
-    order = np.argsort(solid.dofs.max(axis=1), kind="stable")
-    numbers = np.empty(free.shape, dtype=np.intp)
-    ranked = free[order]
-    numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
+    numbers = ranked_numbers(free, solid)
     signs = np.ones(free.shape)
     if across:
         numbers[mesh.axis, 4], signs[mesh.axis, 4] = numbers[mesh.axis, 2], -1.0

@@ -169,10 +169,7 @@ class HarmonicContact(Contact):
 
     def form(self, touch: ContactEvaluation, active: Flags) -> Array:
         """Derivative of the tractions in space by the positions of the points, (n_edges, n_points, n_angles, 3, 3)."""
-        normal = upward(touch.slope)
-        form = (np.where(active, self.stiffness, 0.0)[..., None] * normal)[..., :, None] * normal[..., None, :]
-        form[..., :Z, :Z] -= touch.traction[..., None, None] * touch.curve
-        return form
+        return space_form(np.where(active, self.stiffness, 0.0), touch.slope, -touch.traction, touch.curve)
 
     def form_blocks(self, form: Array) -> Array:
         """Derivative by the edges' coefficients, (n_edges, n * columns, n * columns), from ``form`` by positions."""
@@ -207,6 +204,15 @@ class HarmonicContact(Contact):
 def upward(slope: Array) -> Array:
     """Upward normals (..., 3) of a surface with slopes (..., 2) by x and y, with vertical component 1."""
     return np.concatenate([-slope, np.ones((*slope.shape[:-1], 1))], axis=-1)
+
+
+def space_form(stiff: Array, slope: Array, load: Array, curve: Array) -> Array:
+    """Derivative (..., 3, 3) of tractions in space by positions: ``stiff`` (...) by gap; ``load`` (...), down on a
+    surface with ``slope`` (..., 2) and second derivatives ``curve`` (..., 2, 2)."""
+    normal = upward(slope)
+    form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
+    form[..., :Z, :Z] += load[..., None, None] * curve
+    return np.asarray(form)
 
 
 _DRAWN = 1.3

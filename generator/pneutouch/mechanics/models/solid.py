@@ -325,7 +325,7 @@ def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Arr
     """Force (N) and pressure rise (MPa) at indentations ``grid`` (n,; mm), on Hermite cubics through solved states."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
-    x, states = x[keep], [path[k] for k in np.flatnonzero(keep)]
+    x, states = x[keep], [path[k] for k in np.flatnonzero(keep).tolist()]
     force, rise = np.array([s.force for s in states]), np.array([s.rise for s in states])
     stiffness = np.array([s.stiffness for s in states])
     rate = np.nan_to_num(np.array([s.slope for s in states])) * stiffness

@@ -27,6 +27,12 @@ class BaseLoad:
         return BaseLoad(self.force + other.force, *most)
 
 
+def load_on(face: FacePoints, traction: Array) -> BaseLoad:
+    """Load of the points of a face with the tractions (n_edges, n_points)."""
+    most = float(traction.max())
+    return BaseLoad(float(np.vdot(face.weight, traction)), most, most / face.stiffness)
+
+
 class BaseContact:
     """Contact energy (k/2) sum w <-g>^2 over the points of both faces, an `EnergyTerm`: g is a point's height over the
     base, <-g> its depth below, w its area at rest, and k the stiffness of the contact with the plate.
@@ -42,20 +48,14 @@ class BaseContact:
 
     def at(self, x: Array) -> TermState:
         """Energy and its derivatives at positions x (n_nodes, 2), or at coefficients x of the harmonic model."""
-        outer, inner = self.outer.meet(x), self.inner.meet(x)
-        energy, gradient = 0.0, np.zeros(self._faces.outer.size)
-        if outer is not None:
-            energy += self.outer.energy(outer.traction)
-            gradient = self._faces.push(self.outer.lift(outer))
-        if inner is not None:
-            energy += self.inner.energy(inner.traction)
-            gradient = gradient + self._faces.swell(self.inner.lift(inner))
-        return TermState(
-            energy,
-            gradient,
-            None if outer is None else self.outer.hessian(outer),
-            None if inner is None else self.inner.hessian(inner),
-        )
+        energy, gradient, blocks = 0.0, np.zeros(self._faces.outer.size), list[Array | None]()
+        for face, total in ((self.outer, self._faces.push), (self.inner, self._faces.swell)):
+            met = face.meet(x)
+            blocks.append(None if met is None else face.hessian(met))
+            if met is not None:
+                energy += face.energy(met.traction)
+                gradient = gradient + total(face.lift(met))
+        return TermState(energy, gradient, *blocks)
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
         """Second derivatives at positions x for the inner, then the outer face: by edge positions (n_edges, 2 n, 2 n)
@@ -65,11 +65,8 @@ class BaseContact:
 
     def load(self, x: Array) -> BaseLoad:
         """Load of the outer wall on the base at positions x (n_nodes, 2)."""
-        face, meeting = self.outer, self.outer.meet(x)
-        if meeting is None:
-            return BaseLoad()
-        most = float(meeting.traction.max())
-        return BaseLoad(float(np.vdot(face.weight, meeting.traction)), most, most / face.stiffness)
+        meeting = self.outer.meet(x)
+        return BaseLoad() if meeting is None else load_on(self.outer, meeting.traction)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.banded import FaceSums
-from pneutouch.mechanics.solid.base_contact import BaseLoad
+from pneutouch.mechanics.solid.base_contact import BaseLoad, load_on
 from pneutouch.mechanics.solid.elements import TermState
 from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, cell_counts, graded, grid_cells, with_middles
 from pneutouch.mechanics.solid.object_contact import Contact, FacePoints
@@ -148,10 +148,7 @@ class FlangeContact:
     def load(self, x: Array) -> BaseLoad:
         """Load of the wall on the flange at positions x (n_nodes, 2)."""
         met = self._meet(x)
-        if met is None:
-            return BaseLoad()
-        most = float(met.traction.max())
-        return BaseLoad(float(np.vdot(self._weight, met.traction)), most, most / self._stiffness)
+        return BaseLoad() if met is None else load_on(self._wall, met.traction)
 
     def _meet(self, x: Array) -> _Touch | None:
         """Contact at positions x (n_nodes, 2); None if no point of the wall is below the flange's top."""

@@ -186,12 +186,10 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
     load = -state.filling.pressure * solid.cavity.hessian(state.x)
     band = solid.pattern.matrix([solid.stiffness(state.local), load])
     for term in state.terms:
-        if term.blocks is not None:
-            band = solid.faces.outer.added(band, [term.blocks])
-        if term.inner_blocks is not None:
-            band = solid.faces.inner.added(band, [term.inner_blocks])
-        if term.fold_blocks is not None and solid.faces.fold is not None:
-            band = solid.faces.fold.added(band, [term.fold_blocks])
+        faces, all_blocks = solid.faces, (term.blocks, term.inner_blocks, term.fold_blocks)
+        for pattern, blocks in zip((faces.outer, faces.inner, faces.fold), all_blocks, strict=True):
+            if blocks is not None and pattern is not None:
+                band = pattern.added(band, [blocks])
     return band
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_AH, BY_HH, BY_J, BY_JH, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
@@ -321,11 +321,16 @@ def _number(solid: SolidModel) -> Index:
     free[mesh.axis] = True, False, False
     free[mesh.sliding, IN_Z] = False
     free[mesh.clamped] = False
-    order = np.argsort(solid.dofs.max(axis=1), kind="stable")
-    numbers = np.empty(free.shape, dtype=np.intp)
-    ranked = free[order]
-    numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
+    numbers = ranked_numbers(free, solid)
     numbers[mesh.axis, AROUND] = numbers[mesh.axis, IN_R]
+    return numbers
+
+
+def ranked_numbers(free: Flags, solid: SolidModel) -> Index:
+    """Numbers (n_nodes, k) of the ``free`` unknowns, -1 for others, node by node in the solid's order."""
+    order = np.argsort(solid.dofs.max(axis=1), kind="stable")
+    numbers, ranked = np.empty(free.shape, dtype=np.intp), free[order]
+    numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
     return numbers
 
 
