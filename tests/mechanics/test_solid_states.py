@@ -12,6 +12,7 @@ from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
+from pneutouch.mechanics.models.choice import model_named
 from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
@@ -38,6 +39,31 @@ def test_limit_point_of_the_thick_wall(paper):
     assert curve.pressure.max() == pytest.approx(paper.limit_point.driving_pressure, rel=1e-4)
     assert np.all(np.diff(curve.volume) > 0)
     assert curve.pressure[-1] < 0.97 * curve.pressure.max()
+
+
+def test_sensors_answered_together_have_the_figures_that_each_has_alone():
+    """Walls, radii, moduli and pressures vary; one is driven beyond its limit, one snaps, and both fail alone."""
+    rng = np.random.default_rng(5)
+    walls = [1.4, 1.42, 1.45, 1.45, *(1.5 + 0.5 * rng.random(3)), 1.0, 1.46]
+    sensors = [PAPER.replace(wall_thickness=wall, steps=8) for wall in walls]
+    sensors[3] = sensors[3].replace(inner_radius=7.0)
+    sensors[5] = sensors[5].replace(shear_modulus=1.3 * PAPER.wall.shear_modulus)
+    sensors[6] = sensors[6].replace(depth=8.5)  # Snaps.
+    pressures = [np.array([0.0, 0.012, 0.022])] * 5 + [np.array([0.005, 0.012])] * 2 + [np.array([0.0, 0.2])] * 2
+    pressures[8] = np.array([0.012])
+    together = model_named("solid").answer(sensors, pressures)
+    for sensor, driving, answer in zip(sensors, pressures, together, strict=True):
+        (alone,) = model_named("solid").answer([sensor], [driving])
+        if isinstance(alone, BeyondLimitError):
+            assert isinstance(answer, BeyondLimitError) and answer.limit == alone.limit
+            continue
+        for found, expected in zip(answer.result.states, alone.result.states, strict=True):
+            for name in ("force", "pressure_rise", "contact_radius", "max_stretch"):
+                one, other = getattr(found, name), getattr(expected, name)
+                assert np.abs(one - other).max() < 1e-9 * np.abs(other).max()
+            assert [event.kind for event in found.events] == [event.kind for event in expected.events]
+    assert [isinstance(answer, BeyondLimitError) for answer in together] == [number == 7 for number in range(9)]
+    assert [end.range_end < 8.0 for end in together[6].result.states] == [True, True]
 
 
 def test_work_on_the_gas_is_the_pressure_along_the_inflation_curve(paper):

@@ -49,6 +49,7 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.object_contact import PressedFace
     from pneutouch.mechanics.harmonic.press import OffAxisState
+    from pneutouch.mechanics.solid.indenter import RigidObject
 
 _SUMMARY = (
     f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
@@ -72,8 +73,7 @@ class SolidElements(SensorModel):
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers of `solid_result`, one sensor at a time: the paths of each guide those of the next."""
-        guides: _Paths = {}
-        press = partial(_state, guides=guides)
+        press = partial(_state, {})
         return one_by_one(lambda *one: ModelAnswer(solid_result(*one, pressed_state=press)), sensors, driving_pressures)
 
     def stated_error(self, sensor: Sensor) -> float:
@@ -144,8 +144,7 @@ KINDS = {
 """Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 
-_Paths = dict[float, Sequence[PlateState]]
-"""Solved states of presses by driving pressure, MPa."""
+_Paths = dict[float, Sequence[PlateState]]  # Solved states of presses by driving pressure, MPa.
 
 
 def solid_result(
@@ -164,7 +163,7 @@ def solid_result(
     Raises BeyondLimitError beyond the limit point, ComputationError if no equilibrium is found.
     """
     probe, run = _inflated(sensor, cells, past_limit)
-    press = pressed_state or _state
+    press = pressed_state or partial(_state, {})
     states = tuple(press(sensor, probe, run, float(p)) for p in driving_pressures)
     return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(probe.solid, run), states)
 
@@ -184,7 +183,7 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
     sensor = sensor.replace(waves=0)
     probe = solid_probe(sensor)
     run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
-    return tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
+    return tuple(_state({}, sensor, probe, run, float(p)) for p in driving_pressures)
 
 
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
@@ -277,24 +276,20 @@ def press_settings(sensor: Sensor) -> PressSettings:
     )
 
 
-def _state(
-    sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float, guides: _Paths | None = None
-) -> SensorState:
+def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
     """State at a driving pressure (MPa); its path is led by that in ``guides`` at this pressure, and replaces it."""
     free = state_at(probe.solid, pressure, run)
     test, press = sensor.protocol, press_settings(sensor)
-    pressed = indent(probe.solid, free, press, probe, (guides or {}).get(pressure, ()))
-    if guides is not None:
-        guides[pressure] = pressed.solved
+    pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
+    guides[pressure] = pressed.solved
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)
     force, rise = curve_between(pressed.path, grid)
-    body, last = (
-        first_touch(probe.solid, free, press.body, press.plate_diameter, press.plate_rim).body,
-        _last(pressed, end),
-    )
+    body = first_touch(probe.solid, free, press.body, press.plate_diameter, press.plate_rim).body
+    last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
+    section = partial(_section, press.body, body.height, probe.solid.length)
     return SensorState(
         driving_pressure=pressure,
         apex_inner=free.inner_apex,
@@ -309,8 +304,8 @@ def _state(
         max_stretch=pressed.column("stretch"),
         max_von_mises=pressed.column("von_mises"),
         events=tuple(happened),
-        shapes=_shapes(probe, free, press, pressed, end),
-        walls=_walls(probe.solid, free, press, pressed),
+        shapes=_shapes(probe, free, last, section),
+        walls=_walls(probe.solid.mesh, pressed, section),
         face=partial(_face, sensor, probe.solid.mesh, body, last.positions, last.indentation),
     )
 
@@ -332,11 +327,6 @@ def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Arr
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _last(pressed: IndentationPath, end: float) -> PressState:
-    """The last solved state up to the indentation ``end``, mm."""
-    return max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
-
-
 def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> PressedFace:
     """Pressed outer wall for drawing, at positions (n_nodes, 2), mm, under an object that is given at first contact and
     lowered by an indentation (mm)."""
@@ -350,36 +340,31 @@ def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, ind
     return pressed_face(solid, Harmonics(0), positions, placed, indentation)
 
 
-def _shapes(
-    probe: StrainProbe, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
-) -> tuple[DeformedShape, ...]:
+_Section = Callable[[float | None], Array | None]
+"""Section of the object, (k, 2; mm), for drawing at an indentation; None without one."""
+
+
+def _shapes(probe: StrainProbe, free: FreeState, last: PressState, section: _Section) -> tuple[DeformedShape, ...]:
     """Shapes of the wall at rest, inflated, and pressed to the end of the range."""
-    solid = probe.solid
-    last = _last(pressed, end)
-    positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
-    body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
+    length = probe.solid.length
+    positions = [(None, probe.solid.rest * length), (0.0, free.positions), (last.indentation, last.positions)]
     return tuple(
-        DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length), _section(press, body, at, solid))
-        for at, x in positions
+        DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / length), section(at)) for at, x in positions
     )
 
 
-def _walls(solid: SolidModel, free: FreeState, press: PressSettings, pressed: IndentationPath) -> WallPath:
+def _walls(mesh: SolidMesh, pressed: IndentationPath, section: _Section) -> WallPath:
     """Both faces of the wall at every solved state."""
-    at = np.array([state.indentation for state in pressed.path])
     positions = np.stack([state.positions for state in pressed.path])
-    body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
-    sections = (_section(press, body, depth, solid) for depth in at.tolist())
+    sections = (section(state.indentation) for state in pressed.path)
     return WallPath(
-        indentation=at,
-        inner=positions[:, nodes_along(solid.mesh.inner)],
-        outer=positions[:, nodes_along(solid.mesh.outer)],
+        indentation=np.array([state.indentation for state in pressed.path]),
+        inner=positions[:, nodes_along(mesh.inner)],
+        outer=positions[:, nodes_along(mesh.outer)],
         objects=tuple(section for section in sections if section is not None),
     )
 
 
-def _section(press: PressSettings, start: Indenter | None, at: float | None, solid: SolidModel) -> Array | None:
-    """Section (k, 2; mm) of the object at an indentation (mm), for drawing; None for a plate, or if ``at`` is None."""
-    if press.body is None or start is None or at is None:
-        return None
-    return press.body.at(start.height * solid.length - at).outline(_DRAWN * solid.length)
+def _section(body: RigidObject | None, start: float, length: float, at: float | None) -> Array | None:
+    """Section of a ``body`` at an indentation, from its height at first contact over ``length``; None for a plate."""
+    return None if body is None or at is None else body.at(start * length - at).outline(_DRAWN * length)

@@ -97,18 +97,9 @@ class FaceSums:
     outer: AssemblyPattern
     fold: AssemblyPattern | None = None
 
-    def swell(self, blocks: Array) -> Array:
-        """Sum (size,) of the vectors (n_edges, 2 n) of the inner wall's edges."""
-        return self.inner.vector([blocks])
-
     def push(self, blocks: Array) -> Array:
         """Sum (size,) of the vectors (n_edges, 2 n) of the outer wall's edges."""
         return self.outer.vector([blocks])
-
-    def folded(self, blocks: Array) -> Array:
-        """Sum (size,) of the vectors (n_edges, 2 m) of outer edges with the flange's top, together m nodes."""
-        assert self.fold is not None
-        return self.fold.vector([blocks])
 
 
 def _square(table: Index) -> BlockEntries:

@@ -49,12 +49,12 @@ class BaseContact:
     def at(self, x: Array) -> TermState:
         """Energy and its derivatives at positions x (n_nodes, 2), or at coefficients x of the harmonic model."""
         energy, gradient, blocks = 0.0, np.zeros(self._faces.outer.size), list[Array | None]()
-        for face, total in ((self.outer, self._faces.push), (self.inner, self._faces.swell)):
+        for face, edges in ((self.outer, self._faces.outer), (self.inner, self._faces.inner)):
             met = face.meet(x)
             blocks.append(None if met is None else face.hessian(met))
             if met is not None:
                 energy += face.energy(met.traction)
-                gradient = gradient + total(face.lift(met))
+                gradient = gradient + edges.vector([face.lift(met)])
         return TermState(energy, gradient, *blocks)
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:

@@ -191,8 +191,8 @@ class PathFollower:
         guide, ahead = self._guide, len(self.path)
         if ahead >= len(guide) or guide[0].state.x.shape != self.here.state.x.shape:
             return 0.0
-        pairs = ((guide[ahead - 1].height, self.here.height), (guide[ahead].height, height))
-        if any(abs(guide[0].height - a - (self.path[0].height - b)) > 1.0e-9 for a, b in pairs):
+        higher = guide[0].height - self.path[0].height
+        if max(abs(guide[k].height - h - higher) for k, h in ((ahead - 1, self.here.height), (ahead, height))) > 1.0e-9:
             return 0.0
         other = copy(self)
         other.path = [*guide[:ahead]]

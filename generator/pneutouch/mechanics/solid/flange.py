@@ -139,11 +139,9 @@ class FlangeContact:
         stiff = np.where(met.traction > 0.0, self._stiffness * self._weight, 0.0)
         blocks = np.einsum("eq,eqi,eqk->eik", stiff, by_gap, by_gap)
         blocks -= np.einsum("eq,eqik->eik", load, self._curvature(tilt, bend, n, first / speed[..., None]))
-        return TermState(
-            self._wall.energy(met.traction),
-            self._faces.folded(-np.einsum("eq,eqi->ei", load, by_gap)),
-            fold_blocks=blocks,
-        )
+        assert self._faces.fold is not None
+        gradient = self._faces.fold.vector([-np.einsum("eq,eqi->ei", load, by_gap)])
+        return TermState(self._wall.energy(met.traction), gradient, fold_blocks=blocks)
 
     def load(self, x: Array) -> BaseLoad:
         """Load of the wall on the flange at positions x (n_nodes, 2)."""

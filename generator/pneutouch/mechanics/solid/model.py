@@ -206,12 +206,9 @@ class SolidModel:
         return np.asarray((self.kappa * np.matmul(np.swapaxes(self.tested, 1, 2), content)).ravel())
 
     def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
-        """Fields ``here`` for a tangent at the averaged pressure that the last Newton step expected, from the fields
-        ``before`` it and its ``move`` (n_nodes, 2).
-
-        This is Newton's method for displacements and averaged pressure, both unknown. It needs a sixth fewer steps than
-        with the pressure of the positions, which in a nearly incompressible wall is far off after a long step.
-        """
+        """Fields ``here`` at the averaged pressure that the last Newton step, a ``move`` (n_nodes, 2) from the fields
+        ``before``, expected: Newton's method for displacements and averaged pressure. The pressure of the positions is
+        far off after a long step, and costs a fifth more steps."""
         swelling = before.by_cell[:, -before.content.shape[1] :]
         expected = before.content + np.matmul(swelling, move[self.mesh.cells].reshape(len(swelling), -1, 1))
         pressure, jets = self.averaged_pressure(expected - here.content), here.jets.copy()

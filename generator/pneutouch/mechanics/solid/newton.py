@@ -151,7 +151,7 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     if filling is None:
         return None
     touch = None if scene.plate is None else solid.contact.touch(x, scene.plate)
-    by_volume = solid.faces.swell(edge_gradient)
+    by_volume = solid.faces.inner.vector([edge_gradient])
     inner = solid.pattern.vector([solid.forces(local), -filling.pressure * edge_gradient])
     push = 0.0 * inner if touch is None else solid.faces.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
