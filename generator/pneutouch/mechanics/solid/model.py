@@ -208,7 +208,7 @@ class SolidModel:
     def mixed(self, before: PointFields, here: PointFields, move: Array) -> PointFields:
         """Fields ``here`` at the averaged pressure that the last Newton step, a ``move`` (n_nodes, 2) from the fields
         ``before``, expected: Newton's method for displacements and averaged pressure. The pressure of the positions is
-        far off after a long step, and costs a fifth more steps."""
+        far off after a long step, and costs up to a fifth more steps."""
         swelling = before.by_cell[:, -before.content.shape[1] :]
         expected = before.content + np.matmul(swelling, move[self.mesh.cells].reshape(len(swelling), -1, 1))
         pressure, jets = self.averaged_pressure(expected - here.content), here.jets.copy()
