@@ -36,7 +36,7 @@ from pneutouch.mechanics.prediction import (
 )
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import RigidBase, Sensor
-from pneutouch.mechanics.solid.continuation import PlateState
+from pneutouch.mechanics.solid.continuation import Guides
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells
@@ -144,7 +144,7 @@ KINDS = {
 """Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 
-_Paths = dict[float, Sequence[PlateState]]  # Solved states of presses by driving pressure, MPa.
+_Paths = dict[float, Guides]  # Paths of the last two sensors by driving pressure, MPa.
 
 
 def solid_result(
@@ -277,11 +277,11 @@ def press_settings(sensor: Sensor) -> PressSettings:
 
 
 def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
-    """State at a driving pressure (MPa); its path is led by that in ``guides`` at this pressure, and replaces it."""
+    """State at a driving pressure (MPa); those in ``guides`` at this pressure lead its path, which joins them."""
     free = state_at(probe.solid, pressure, run)
     test, press = sensor.protocol, press_settings(sensor)
     pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
-    guides[pressure] = pressed.solved
+    guides[pressure] = [pressed.solved, *guides.get(pressure, ())[:1]]
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
@@ -340,8 +340,7 @@ def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, ind
     return pressed_face(solid, Harmonics(0), positions, placed, indentation)
 
 
-_Section = Callable[[float | None], Array | None]
-"""Section of the object, (k, 2; mm), for drawing at an indentation; None without one."""
+_Section = Callable[[float | None], Array | None]  # Section of the object, (k, 2; mm), at an indentation.
 
 
 def _shapes(probe: StrainProbe, free: FreeState, last: PressState, section: _Section) -> tuple[DeformedShape, ...]:

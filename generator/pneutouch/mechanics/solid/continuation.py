@@ -110,19 +110,20 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     return max(0.0, share - allowance)
 
 
+Guides = Sequence[Sequence[PlateState]]  # Solved paths of similar domes.
+
+
 class PathFollower:
     """The states of a path, and steps to further plate heights, from first contact on; heights in R0.
 
-    ``guide``: path of a similar dome on the same cells, whose extrapolation errs alike where the steps are the same.
+    ``guides``: at most two paths of domes on the same cells, the more similar one first: extrapolation errs alike there.
     """
 
     #: 1 while the plate comes down, -1 while it goes up.
     down = 1.0
 
-    def __init__(
-        self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, guide: Sequence[PlateState] = ()
-    ) -> None:
-        self._solid, self._plate, self._guide = solid, plate, guide
+    def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, guides: Guides = ()) -> None:
+        self._solid, self._plate, self._guides = solid, plate, guides
         self.path = [self._first(SolidScene(solid, supply, plate), start)]
 
     def _first(self, scene: SolidScene, start: Array) -> PlateState:
@@ -187,16 +188,32 @@ class PathFollower:
         return minimise(scene, x)
 
     def _expected_miss(self, height: float) -> Array | float:
-        """Displacements (n_nodes, 2) by which extrapolation will fall short, by the guide; 0 if it has no such step."""
-        guide, ahead = self._guide, len(self.path)
-        if ahead >= len(guide) or guide[0].state.x.shape != self.here.state.x.shape:
+        """Displacements (n_nodes, 2) by which extrapolation will fall short: that of the first guide, and the share of
+        its difference from the second that fits the last step best; 0 without a guide that has this step."""
+        ahead, guides = len(self.path), [path for path in self._guides if self._goes_along(path, height)]
+        if not guides:
             return 0.0
-        higher = guide[0].height - self.path[0].height
-        if max(abs(guide[k].height - h - higher) for k, h in ((ahead - 1, self.here.height), (ahead, height))) > 1.0e-9:
-            return 0.0
-        other = copy(self)
-        other.path = [*guide[:ahead]]
-        return np.asarray(guide[ahead].state.x - other._turning(guide[ahead].height))
+        expected = self._miss(guides[0], ahead)
+        if len(guides) < 2 or ahead < 2:
+            return expected
+        last, apart = self._miss(guides[0], ahead - 1), expected - self._miss(guides[1], ahead)
+        before = last - self._miss(guides[1], ahead - 1)
+        share = np.vdot(self._miss(self.path, ahead - 1) - last, before) / max(float(np.vdot(before, before)), 1.0e-300)
+        return np.asarray(expected + np.clip(share, -1.0, 2.0) * apart)
+
+    def _goes_along(self, path: Sequence[PlateState], height: float) -> bool:
+        """True if a path of the same cells has a step from the last state's travel to that of a ``height``."""
+        ahead = len(self.path)
+        if ahead >= len(path) or path[0].state.x.shape != self.here.state.x.shape:
+            return False
+        higher, here = path[0].height - self.path[0].height, self.here.height
+        return max(abs(path[k].height - h - higher) for k, h in ((ahead - 1, here), (ahead, height))) < 1.0e-9
+
+    def _miss(self, path: Sequence[PlateState], number: int) -> Array:
+        """Displacements (n_nodes, 2) by which the extrapolation of a path to its state ``number`` fell short."""
+        before = copy(self)
+        before.path = [*path[:number]]
+        return np.asarray(path[number].state.x - before._turning(path[number].height))
 
     def _extrapolate(self, height: float) -> Array:
         """Positions extrapolated along the path's tangent; at first contact those of the last state."""

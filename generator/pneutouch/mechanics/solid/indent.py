@@ -24,7 +24,7 @@ from pneutouch.mechanics.events import (
     crossing,
 )
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
+from pneutouch.mechanics.solid.continuation import Guides, PathFollower, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
@@ -118,8 +118,7 @@ class PressState:
 class IndentationPath:
     """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, also those between the steps. ``complete``: the depth was reached. ``solved``:
-    the solver's states, a guide for `indent`.
+    ``path`` has every solved state, also between the steps, ``solved`` the solver's. ``complete``: the depth was reached.
     """
 
     states: list[PressState]
@@ -141,20 +140,16 @@ class IndentationPath:
 
 
 def indent(
-    solid: SolidModel,
-    free: FreeState,
-    press: PressSettings,
-    probe: StrainProbe | None = None,
-    guide: Sequence[PlateState] = (),
+    solid: SolidModel, free: FreeState, press: PressSettings, probe: StrainProbe | None = None, guides: Guides = ()
 ) -> IndentationPath:
     """Shut in the gas at a free state and lower the plate; presses of one solid can share a ``probe``, None: a new one.
-    ``guide``: solved states of a press without friction of a similar dome, which save Newton steps.
+    ``guides``: as in `PathFollower`, from presses without friction; they save Newton steps.
 
     `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
     there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
     """
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
-    follower, length, plate = follower_of(solid, free, press, touch, guide), solid.length, touch.body
+    follower, length, plate = follower_of(solid, free, press, touch, guides), solid.length, touch.body
     recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
@@ -173,16 +168,16 @@ def indent(
 
 
 def follower_of(
-    solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch, guide: Sequence[PlateState] = ()
+    solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch, guides: Guides = ()
 ) -> PathFollower:
-    """Path follower of a press, at the first contact ``touch``, with the gas shut in; ``guide`` as in `indent`."""
+    """Path follower of a press, at the first contact ``touch``, with the gas shut in; ``guides`` as in `indent`."""
     gas = shut_in(solid, free, press)
     if press.friction:
         # Most presses have no friction: its modules are loaded only here.
         from pneutouch.mechanics.solid.friction_path import FrictionFollower
 
         return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
-    return PathFollower(solid, gas, touch.body, free.unit.x, guide)
+    return PathFollower(solid, gas, touch.body, free.unit.x, guides)
 
 
 def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:

@@ -95,13 +95,9 @@ def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> F
     )
 
 
-def _scene(solid: SolidModel, target: float) -> SolidScene:
-    return SolidScene(solid, Liquid(target, _LIQUID), None)
-
-
 def rest_state(solid: SolidModel) -> FreeState:
     """The unloaded dome, with its initial slope dp/dV. Raises NoConvergenceError."""
-    scene = _scene(solid, solid.cavity.volume(solid.rest))
+    scene = SolidScene(solid, Liquid(solid.cavity.volume(solid.rest), _LIQUID), None)
     outcome = minimise(scene, solid.rest)
     if isinstance(outcome, NewtonFailure):
         raise NoConvergenceError("0 kPa", outcome.why, "a mesh without distorted cells")
@@ -141,7 +137,7 @@ def at_volume(
     last = path[-1]
     slope = last.stiffness * solid.length**3 / solid.mu
     pressure = last.unit.filling.pressure + slope * (volume - last.unit.volume)
-    scene = _scene(solid, volume + pressure / _LIQUID)
+    scene = SolidScene(solid, Liquid(volume + pressure / _LIQUID, _LIQUID), None)
     outcome = minimise(scene, _guess(solid, path, volume) if guess is None else guess)
     return outcome if isinstance(outcome, NewtonFailure) else free_state(solid, scene, outcome)
 

@@ -81,18 +81,14 @@ class SolidScene:
     plate: Indenter | None
     terms: tuple[EnergyTerm, ...] = ()
 
-    @property
-    def acting(self) -> tuple[EnergyTerm, ...]:
-        """All energy terms: the body's own supports first, then those of the scene."""
-        return (*self.solid.supports, *self.terms)
-
 
 @dataclass(frozen=True)
 class SolverState:
     """Positions x (n_nodes, 2) with all quantities evaluated there; nondimensional.
 
     residual: gradient of the total energy (size,); inner: its part without the plate; scale: magnitude of the balancing
-    forces; by_volume: gradient of the cavity volume (size,); touch: None without plate; terms: those of `acting`.
+    forces; by_volume: gradient of the cavity volume (size,); touch: None without plate; terms: those of the supports,
+    then of the scene.
     """
 
     x: Array
@@ -156,7 +152,7 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     push = 0.0 * inner if touch is None else solid.faces.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
-    acting = scene.acting
+    acting = (*solid.supports, *scene.terms)
     terms = tuple(term.at(x) for term in acting)
     for term, there in zip(acting, terms, strict=True):
         inner = inner + there.gradient

@@ -45,10 +45,6 @@ class HarmonicBlocks:
     linear: Array
     square: Array
 
-    def at(self, n: int) -> Array:
-        """The blocks for n waves."""
-        return np.asarray(self.constant + n * self.linear + n * n * self.square)
-
 
 def empty_blocks(blocks: int, nodes: int) -> Array:
     """Zero array indexed by block, node, displacement, node, displacement."""
