@@ -24,7 +24,8 @@ class Springs:
         self.solid = solid
 
     def at(self, x):
-        families = ((self.solid.mesh.outer, self.solid.faces.push), (self.solid.mesh.inner, self.solid.faces.swell))
+        mesh, faces = self.solid.mesh, self.solid.faces
+        families = ((mesh.outer, faces.push), (mesh.inner, lambda blocks: faces.inner.vector([blocks])))
         energy, gradient, blocks = 0.0, 0.0, []
         for edges, gathered in families:
             place = x[edges].reshape(edges.shape[0], -1)

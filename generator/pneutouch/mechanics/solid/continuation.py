@@ -88,8 +88,7 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
 
     It is near 0 along one branch, where d(energy)/d(height) = -force; dissipation by friction is no loss. The trapezium
     rule for the work is corrected by the curvature of the force through three states; in the first step by the slope at
-    its end, and `_FIRST_STEP` is taken off the share, because this is less accurate.
-    """
+    its end, and `_FIRST_STEP` is taken off the share, because this is less accurate."""
     here = path[-1]
     travel = here.height - after.height
     work = 0.5 * travel * (here.force + after.force)
@@ -116,7 +115,7 @@ Guides = Sequence[Sequence[PlateState]]  # Solved paths of similar domes.
 class PathFollower:
     """The states of a path, and steps to further plate heights, from first contact on; heights in R0.
 
-    ``guides``: at most two paths of domes on the same cells, the more similar one first: extrapolation errs alike there.
+    ``guides``: at most two paths of domes on the same cells, the more similar first: extrapolation errs alike there.
     """
 
     #: 1 while the plate comes down, -1 while it goes up.
@@ -158,8 +157,7 @@ class PathFollower:
         return other
 
     def step(self, height: float) -> PlateState:
-        """Add a state at `height`, or before it by a shorter step, and return it; NoConvergenceError if none is
-        found."""
+        """Add a state at `height` or, by a shorter step, before it, and return it. Raises NoConvergenceError."""
         travel = min(self.left(height), LONGEST)
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
@@ -190,24 +188,18 @@ class PathFollower:
     def _expected_miss(self, height: float) -> Array | float:
         """Displacements (n_nodes, 2) by which extrapolation will fall short: that of the first guide, and the share of
         its difference from the second that fits the last step best; 0 without a guide that has this step."""
-        ahead, guides = len(self.path), [path for path in self._guides if self._goes_along(path, height)]
+        ahead, here = len(self.path), self.here
+        same = [path for path in self._guides if ahead < len(path) and path[0].state.x.shape == here.state.x.shape]
+        travel = here.height - height
+        guides = [path for path in same if abs(path[ahead - 1].height - path[ahead].height - travel) < 1.0e-9]
         if not guides:
             return 0.0
         expected = self._miss(guides[0], ahead)
         if len(guides) < 2 or ahead < 2:
             return expected
-        last, apart = self._miss(guides[0], ahead - 1), expected - self._miss(guides[1], ahead)
-        before = last - self._miss(guides[1], ahead - 1)
-        share = np.vdot(self._miss(self.path, ahead - 1) - last, before) / max(float(np.vdot(before, before)), 1.0e-300)
-        return np.asarray(expected + np.clip(share, -1.0, 2.0) * apart)
-
-    def _goes_along(self, path: Sequence[PlateState], height: float) -> bool:
-        """True if a path of the same cells has a step from the last state's travel to that of a ``height``."""
-        ahead = len(self.path)
-        if ahead >= len(path) or path[0].state.x.shape != self.here.state.x.shape:
-            return False
-        higher, here = path[0].height - self.path[0].height, self.here.height
-        return max(abs(path[k].height - h - higher) for k, h in ((ahead - 1, here), (ahead, height))) < 1.0e-9
+        mine, first, second = (self._miss(path, ahead - 1) for path in (self.path, *guides))
+        share = np.vdot(mine - first, first - second) / max(float(np.linalg.norm(first - second)) ** 2, 1.0e-300)
+        return np.asarray(expected + np.clip(share, -1.0, 2.0) * (expected - self._miss(guides[1], ahead)))
 
     def _miss(self, path: Sequence[PlateState], number: int) -> Array:
         """Displacements (n_nodes, 2) by which the extrapolation of a path to its state ``number`` fell short."""
@@ -223,8 +215,7 @@ class PathFollower:
 
     def _turning(self, height: float) -> Array:
         """Positions extrapolated to second order; along the tangent if the next step is over twice as long as the last
-        or there are fewer than three states. Not used with friction.
-        """
+        or there are fewer than three states. Not used with friction."""
         guess = self._extrapolate(height)
         if len(self.path) < 3 or height == self.here.height:
             return guess
@@ -293,8 +284,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
     """Bisect between the last sound state and the height ``end``, where the state is not sound or not found; returns
     the jump, or None if the path reaches ``end`` on one branch after all.
 
-    A state may be sound when it is approached in shorter steps, so the last bracket is repeated in short steps.
-    """
+    A state may be sound when it is approached in shorter steps, so the last bracket is repeated in short steps."""
     begun = follower.here
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
     bad, tried_from_here = end, False
@@ -326,8 +316,7 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
     """End of a path at a failed solve, which by itself does not show another branch: the states a little beyond decide.
     None if the path continues soundly there, as it may after a height at which friction releases a point.
 
-    With friction there is no energy to minimise, and often nothing is found: a limit point of the path is tried first.
-    """
+    With friction there is no energy to minimise, and often nothing is found: a limit point of the path is tried first."""
     here = follower.here
     if here.friction is not None and (turn := _limit_point(follower.path)) is not None:
         return turn
@@ -357,8 +346,7 @@ def _turns_back(path: list[PlateState]) -> bool:
     """True if the last three states approach a limit point.
 
     Near it the wall's speed grows with the inverse square root of the distance left, so its inverse square falls
-    linearly to 0 (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9).
-    """
+    linearly to 0 (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9)."""
     if len(path) < 3:
         return False
     height = np.array([state.height for state in path[-3:]])

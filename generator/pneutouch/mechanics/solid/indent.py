@@ -118,7 +118,7 @@ class PressState:
 class IndentationPath:
     """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, also between the steps, ``solved`` the solver's. ``complete``: the depth was reached.
+    ``path`` has every state, also between the steps, ``solved`` the solver's. ``complete``: the depth was reached.
     """
 
     states: list[PressState]
