@@ -316,7 +316,7 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
     """End of a path at a failed solve, which by itself does not show another branch: the states a little beyond decide.
     None if the path continues soundly there, as it may after a height at which friction releases a point.
 
-    With friction there is no energy to minimise, and often nothing is found: a limit point of the path is tried first."""
+    With friction there is no energy to minimise, and often nothing is found: a limit point is tried first."""
     here = follower.here
     if here.friction is not None and (turn := _limit_point(follower.path)) is not None:
         return turn
@@ -346,7 +346,7 @@ def _turns_back(path: list[PlateState]) -> bool:
     """True if the last three states approach a limit point.
 
     Near it the wall's speed grows with the inverse square root of the distance left, so its inverse square falls
-    linearly to 0 (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9)."""
+    linearly to 0 (Seydel 2010, Practical Bifurcation and Stability Analysis, 2.2, doi:10.1007/978-1-4419-1740-9)."""
     if len(path) < 3:
         return False
     height = np.array([state.height for state in path[-3:]])
