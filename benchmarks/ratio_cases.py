@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -130,8 +131,8 @@ def _one_of_the_solid() -> Callable[[], object]:
     from benchmarks.scenes import PAPER
     from pneutouch.mechanics import predict
 
-    number = itertools.count(1)
-    return lambda: predict("", PAPER.replace(dead_volume=1e-6 * next(number)), [0.012], model="solid")
+    sensors = (PAPER.replace(dead_volume=1e-6 * number) for number in itertools.count(1))
+    return lambda: predict("", next(sensors), [0.012], model="solid")
 
 
 def order_zero(folder: Path, friction: float = 0.0) -> Pair:
@@ -149,8 +150,7 @@ def atlas_batch(folder: Path) -> Pair:
 
     from pneutouch.mechanics.atlas.respond import respond
 
-    sensors = random_batch(1000, 1)
-    return lambda: respond(sensors), _one_of_the_solid()
+    return partial(respond, random_batch(1000, 1)), _one_of_the_solid()
 
 
 def atlas_single(folder: Path) -> Pair:
@@ -158,8 +158,7 @@ def atlas_single(folder: Path) -> Pair:
 
     from pneutouch.mechanics.atlas.respond import respond
 
-    single = random_batch(1, 1)
-    return lambda: respond(single), _one_of_the_solid()
+    return partial(respond, random_batch(1, 1)), _one_of_the_solid()
 
 
 def sway(folder: Path) -> Pair:
