@@ -169,8 +169,8 @@ def _fields(count: int) -> dict[str, Any]:
 
 
 def _arrays(model: str, fields: dict[str, Any]) -> None:
-    """The atlas's array operations alone: of each state and the 24 neighbours behind its interval."""
-    walls = np.repeat(fields["wall_thickness_mm"], 25 * len(SWEPT_AT_KPA))
+    """The atlas's array operations alone: of each state and the 14 neighbours behind its interval."""
+    walls = np.repeat(fields["wall_thickness_mm"], 15 * len(SWEPT_AT_KPA))
     pressures = np.resize(SWEPT_AT_KPA, walls.size) * KPA
     respond(replace(batch_of(sensor(pt.load("paper-dome")), pressures), wall_thickness=walls))
 

@@ -266,7 +266,9 @@ def test_a_sweep_that_names_no_model_takes_the_one_of_its_contact(over, settings
 
 
 def test_more_points_than_a_file_can_hold_are_refused_with_yes_too(library, tmp_path):
-    grid = {f"membrane.{name}": {"from": 1, "to": 2, "count": 10000} for name in ("wall_thickness_mm", "inner_radius_mm")}
+    grid = {
+        f"membrane.{name}": {"from": 1, "to": 2, "count": 10000} for name in ("wall_thickness_mm", "inner_radius_mm")
+    }
     with pytest.raises(InputError) as caught:
         sweep(plan_of_grid("paper-dome", grid | {"pneumatics.dead_volume_mL": list(range(22))}), tmp_path / "x.nc")
     assert str(2**31 - 1) in str(caught.value.remedy) and not list(tmp_path.iterdir())
