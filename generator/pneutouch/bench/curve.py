@@ -193,12 +193,14 @@ def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Arr
 
 
 def _deepest(blocks: Blocks, part: Excursion) -> int:
-    """Index of the block at which a loading ends: the first at the depth of its stay, else the deepest."""
+    """Index of the block at which a loading ends: the first at the depth of its stay, else the deepest, the middle one
+    where a coarse travel reads several alike."""
     begin, end = part.hold
     place = blocks.position[begin:end]
     # A quick turn has one deepest block; a slow one many, of which noise must not choose.
     place = smoothed(place) if place.size >= LOADING_POINTS else place
-    return begin + int((place >= np.median(place)).argmax() if part.held else place.argmax())
+    deepest = np.flatnonzero(place >= (np.median(place) if part.held else place.max()))
+    return begin + int(deepest[0 if part.held else deepest.size // 2])
 
 
 def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:

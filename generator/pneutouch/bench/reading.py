@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, stretches
 from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval
-from pneutouch.bench.run_warnings import lagging
+from pneutouch.bench.run_warnings import refreshed
 from pneutouch.bench.source import MeasuredFile, otherwise
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
@@ -85,11 +85,12 @@ def read_blocks(
         collector.take(chunk.rows, samples)
         cut = cut or chunk.last is not None
         progress(chunk.share)
-    blocks = collector.blocks()
+    blocks, warnings = refreshed(collector.blocks(), keys)
     end = float(blocks.time[-1])
-    warnings = [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][:cut]
+    warnings += [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][
+        :cut
+    ]
     if pressed:
-        warnings += lagging(blocks)
         _check_apart(blocks, columns, keys)
         if "position" in keys:
             _check_alive(blocks, names)
@@ -142,7 +143,7 @@ def _at_end(blocks: Blocks, key: str) -> list[SuspectInterval]:
     noise = float(np.median(np.abs(np.diff(values, 2)))) if values.size > 2 else 0.0
     within = max(4.0 * noise, _STILL * float(np.ptp(values)))
     before = 0
-    for start, end in _runs(values >= values.max() - within):
+    for start, end in stretches(values >= values.max() - within):
         went = float(follows[start:end].max() - follows[start])
         earlier = before + np.flatnonzero(follows[before:start] <= follows[start] - went)
         before, ended = end, False
@@ -234,7 +235,7 @@ def _short(blocks: Blocks, beyond: Flags) -> Flags:
     """Flags (n,) of blocks in ``beyond`` that lie in stretches too short to come from the plate."""
     most = max(SPIKE * blocks.rate / blocks.size, FEW)
     short: Flags = np.zeros(beyond.size, bool)
-    for start, end in _runs(beyond):
+    for start, end in stretches(beyond):
         short[start:end] = end - start < most
     return short
 
@@ -249,7 +250,7 @@ def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str
             False,
             "spike",
         )
-        for start, end in _runs(spikes)
+        for start, end in stretches(spikes)
     ]
 
 
@@ -264,21 +265,16 @@ def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> F
     if top.sum() < least or not others.any() or again[others].mean() > ALIKE:
         return np.zeros(values.size, bool)
     long: Flags = np.zeros(values.size, bool)
-    for start, end in _runs(top):
+    for start, end in stretches(top):
         long[start:end] = end - start >= least
     return long
-
-
-def _runs(mask: Flags) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _parts(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
     """Begin and end in s of the parts in which ``mask`` holds; parts less than `FLAT` apart count as one."""
     parts: list[tuple[float, float]] = []
     width = blocks.size / blocks.rate
-    for start, end in _runs(mask):
+    for start, end in stretches(mask):
         begin, finish = float(blocks.time[start] - width / 2), float(blocks.time[end - 1] + width / 2)
         if parts and begin - parts[-1][1] < FLAT:
             parts[-1] = (parts[-1][0], finish)

@@ -3,15 +3,17 @@
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Index, stretches
 from pneutouch.bench.excursions import NEAR, Excursion
 from pneutouch.bench.first_contact import COARSE, Baseline, baseline, step_share
 from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, read_window
-from pneutouch.bench.record import Blocks, MeasuredIndentation, SuspectInterval, SuspectKind
+from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation, SuspectInterval, SuspectKind
+from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
@@ -85,6 +87,7 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
         warnings += _of_one(number, indent, blocks, indentations, usual, not turns)
     if not turns:
         warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
+    warnings += _lagging(blocks, indentations, by_hand=run.kind == "hand")
     # By hand the stretch before contact is found by the force itself, and ends a little late for a slope.
     return warnings if run.kind == "hand" else warnings + _leak(blocks, indentations) + _place(blocks, indentations)
 
@@ -225,27 +228,68 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
 
 
 _BEND, _MOST_LAG = 0.2, 0.6
-"""Time over which a bend of force or pressure is measured, and greatest lag that is looked for, s: our choice."""
+"""Time over which a bend of force or pressure is measured, and greatest lag that bends show, s: our choice."""
 
 _MATCHED, _BLURRED, _LAG_COUNTS = 0.9, 0.5, 0.01
-"""Correlation of the bends above which their lag is known, greatest one at other lags, and change of the rise at its
+"""Correlation of the bends above which their lag is known, greatest one at other lags, and change of the channel at its
 steepest, as a share of its span, above which a lag is asked about: our choice."""
 
+_RETURNED, _LEAST, _SAME, _TRIES = 0.1, 8, 1e-9, 8
+"""Share of its way in by which a plate may end a press short of its clear end, for its lag; blocks that are averaged at
+an end, and least number of refreshes; relative difference of the same reading; steps of at most `_BEND` in which a lag
+is found: our choice."""
 
-def lagging(blocks: Blocks) -> list[SuspectInterval]:
-    """Doubt about the time between force and pressure, or none: both bend where the plate turns, so must coincide."""
+
+def _lagging(blocks: Blocks, indentations: RunIndentations, *, by_hand: bool) -> list[SuspectInterval]:
+    """Doubt about the time between force, pressure and travel, or none."""
     if blocks.time.size < 3:
         return []
     step = float(np.median(np.diff(blocks.time)))
+    lags = {key: _behind(blocks, indentations, key) for key in ("force", "pressure") if not by_hand}
+    for key, other in (("force", "pressure"), ("pressure", "force")):
+        # A plate whose place is told late has both after it: that shifts first contact and depths alike.
+        if lags and (doubt := _late(blocks, key, "travel", lags[key] - max(lags[other], 0.0), step)):
+            return doubt
     even = np.arange(blocks.time[0], blocks.time[-1], step)
     force, rise = (np.interp(even, blocks.time, values) for values in (blocks.force, blocks.pressure))
     lag = _lag(force, rise, step)
-    span = float(np.ptp(rise))
-    if abs(lag) < 2 * step or float(np.abs(np.diff(rise)).max()) * abs(lag) / step < _LAG_COUNTS * span:
+    return _late(blocks, *(("force", "pressure") if lag < 0 else ("pressure", "force")), abs(lag), step)
+
+
+def _late(blocks: Blocks, key: str, first: str, lag: float, step: float) -> list[SuspectInterval]:
+    """Doubt about a channel ``lag`` seconds behind ``first``, if it changes much in so short a time."""
+    values = getattr(blocks, key)
+    missed = float(np.abs(np.diff(values)).max()) * lag / step / float(np.ptp(values))
+    if lag < 2 * step or missed < _LAG_COUNTS:
         return []
-    first, later = ("pressure", "force") if lag < 0 else ("force", "pressure")
-    why = f"{later} turns {abs(lag):.2g} s after the {first}: does a filter or another clock delay one of the channels?"
+    why = f"the {key} comes {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
+    # Between stays a plate may go far in so short a time; the readings at the stays are right then.
+    if missed < 0.5:
+        why += f" Take that out, or press {math.ceil(1.5 * missed / _LAG_COUNTS)} times slower"
     return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
+
+
+def _behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
+    """Time in s by which a channel follows the travel, by the area that it encloses over it, in and out.
+
+    The area of y(t - lag) over x is -lag times the integral of y' x', for a short lag. A wall that relaxes, a leak and
+    warmed gas all make a channel lead; a drift from before to after a press is taken out."""
+    time, place, lag = blocks.time, blocks.position, 0.0
+    clear = [*sorted({one.clear for one in indentations.parts}), (0, time.size)]
+    for _ in range(_TRIES):
+        values = np.interp(time + lag, time, getattr(blocks, key))
+        area = speeds = 0.0
+        for (start, _), (_, out) in itertools.pairwise(clear):
+            x, t, y = place[start:out], time[start:out], values[start:out]
+            steps = np.diff(t)
+            gone = t.size >= 2 * _LEAST and x[-_LEAST:].mean() - x[:_LEAST].mean() <= _RETURNED * np.ptp(x)
+            if not gone or steps.max() > GAP + 2 * np.median(steps):
+                continue
+            y = y - np.interp(t, t[[0, -1]], [y[:_LEAST].mean(), y[-_LEAST:].mean()])
+            area += float((0.5 * (y[1:] + y[:-1])) @ np.diff(x))
+            speeds += float((np.diff(y) / steps) @ np.diff(x))
+        lag -= float(np.clip(area / max(speeds, 1e-300), -_BEND, _BEND))
+    return lag
 
 
 def _lag(force: Array, rise: Array, step: float) -> float:
@@ -268,3 +312,54 @@ def _lag(force: Array, rise: Array, step: float) -> float:
     best = int(np.argmax(np.where(near, match, -1.0)))
     known = match[best] >= _MATCHED and float(np.abs(match[~near]).max()) <= _BLURRED
     return step * float(lags[best]) if known else 0.0
+
+
+_KEPT, _GOES_ON, _GREAT, _TURNED = 0.6, 0.75, 0.02, 0.01
+"""Share of the blocks that repeat the one before, and of another channel's way that it makes meanwhile, from which on a
+channel is refreshed seldom; steps of the travel, as a share of its span, that are too great for figures over it; share
+of the span by which a channel leaves its straight line between refreshes where the plate turns: our choice."""
+
+
+def refreshed(blocks: Blocks, channels: Sequence[str]) -> tuple[Blocks, list[SuspectInterval]]:
+    """Blocks with straight lines through the readings of a force or pressure at the moments at which it is refreshed,
+    and notes on that. Where the plate turns in between, the other channel shows how far it went.
+
+    Raises InputError for a travel whose steps are great while force and pressure go on."""
+    notes = []
+    for key, other in (("position", "force"), ("force", "pressure"), ("pressure", "force")):
+        at = _refreshes(blocks, key, other) if {key, other} <= set(channels) else None
+        if at is None:
+            continue
+        span, follows, time = np.ptp(getattr(blocks, key)), getattr(blocks, other), blocks.time
+        # The block with which a reading begins may still hold some of the one before.
+        values = getattr(blocks, key)[at + 1]
+        step = float(np.median(np.abs(np.diff(values))))
+        if key == "position":
+            if step > _GREAT * span:
+                problem = f"column {blocks.columns.position.name}: one reading stays while the force goes on, for steps"
+                remedy = "record the travel finer or more often, or give `kind` hand, which does without it"
+                raise InputError(f"{problem} of {step:.2g} mm", file=blocks.file, remedy=remedy)
+            continue
+        if step <= 1.5 * blocks.steps[key == "pressure"]:
+            continue
+        line = np.interp(time, time[at], values)
+        alike = np.polyval(np.polyfit(follows[at], values, 3), follows)
+        turn = alike - np.interp(time, time[at], alike[at])
+        line += np.where(np.abs(turn) > _TURNED * span, turn, 0.0)
+        blocks = replace(blocks, **{key: line, f"{key}_extreme": np.abs(line)})
+        why = f"the {key} refreshes only every {float(np.median(np.diff(time[at]))):.2g} s"
+        why += "; between two readings a straight line is taken"
+        notes.append(SuspectInterval(float(time[0]), float(time[-1]), why, True))
+    return blocks, notes
+
+
+def _refreshes(blocks: Blocks, key: str, other: str) -> Index | None:
+    """Blocks (k,) with which a new reading of a channel begins; None if it is read as often as the other."""
+    values, follows = getattr(blocks, key), getattr(blocks, other)
+    again = np.abs(np.diff(values, prepend=np.nan)) <= _SAME * np.abs(values).max()
+    kept = np.array(stretches(again), int).reshape(-1, 2)
+    if again.mean() < _KEPT or len(kept) < _LEAST:
+        return None
+    start, end = kept[:, 0] - 1, kept[:, 1] - 1
+    way = float(np.abs(np.diff(follows[start])).sum())
+    return start if float(np.abs(follows[end] - follows[start]).sum()) > _GOES_ON * way else None
