@@ -43,9 +43,9 @@ _PRESSED = 30.0
 PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force", "pressure"), ("time", "pressure")
 """Channels of a run with a plate, of a run pressed by hand, whose travel is unknown, and of a run without contact."""
 
-_COPIED = 3e-4
-"""Difference, as a share of its span, up to which a channel is a copy of another (rounded, with a little noise): our
-choice. No two instruments agree so closely, and no dome is so linear."""
+_COPIED, _LINEAR = 3e-4, 0.03
+"""Difference, as a share of its span and beyond rounding, up to which a channel is a copy of another; the greatest with
+rounding: our choice. No two instruments agree so closely, and no dome is so linear: those known bend by 0.045."""
 
 _STILL, _GROWN, _RISEN = 1e-3, 0.02, 0.2
 """Shares of a channel's span: within the first of its greatest value it stays there; growth over as much travel before,
@@ -160,14 +160,19 @@ def _at_end(blocks: Blocks, key: str) -> list[SuspectInterval]:
 
 
 def _check_apart(blocks: Blocks, columns: ColumnMap, keys: Sequence[str]) -> None:
-    """Raise InputError if one channel is a linear function of another, as when a column is copied or named twice."""
-    known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in keys]
+    """Raise InputError if one channel is a linear function of another, as when a column is copied or named twice, or
+    the very time while others turn back."""
+    known = [(key, getattr(blocks, key)) for key in PLATE if key in keys]
+    steps = dict(zip(PLATE[2:], blocks.steps, strict=True))
     for (first, one), (second, other) in itertools.combinations(known, 2):
         spans = float(np.ptp(one)), float(np.ptp(other))
-        if blocks.size < 1 or one.size < 3 or min(spans) <= 0:
+        if one.size < 3 or min(spans) <= 0:
             continue
         slope, level = np.polyfit(one, other, 1)
-        if np.abs(other - slope * one - level).max() <= _COPIED * spans[1]:
+        rounding = 0.55 * (steps.get(second, 0.0) + abs(slope) * steps.get(first, 0.0))
+        if np.abs(other - slope * one - level).max() <= min(_COPIED * spans[1] + rounding, _LINEAR * spans[1]):
+            if first == "time" and not any(values[-1] < 0.5 * values.max() for _, values in known[1:]):
+                continue
             of = [getattr(columns, key) for key in (first, second)]
             scale = [UNITS[key][column.unit] * column.sign for key, column in zip((first, second), of, strict=True)]
             times = slope * scale[0] / scale[1]

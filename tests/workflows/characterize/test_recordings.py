@@ -38,7 +38,7 @@ VARIANTS = {
 }
 """Recordings of which the everyday run reads others that are nearly alike."""
 
-NAMES = {"position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
+NAMES = {"time": "time_s", "position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
 
 
 def read(folder, recording, **options):
@@ -342,18 +342,33 @@ def test_a_press_by_hand_of_the_wrong_sign_is_refused_with_the_sign(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "factor"), [("force", "pressure", 1.0), ("force", "pressure", 2.2), ("position", "force", 1.0)]
+    ("first", "second", "factor", "step"),
+    [
+        ("force", "pressure", 1.0, None),
+        ("force", "pressure", 2.2, None),
+        ("position", "force", 1.0, None),
+        ("time", "position", 1.0, None),
+        ("pressure", "force", 0.4, 0.1),
+        ("pressure", "force", 0.4, 1.0),
+    ],
 )
-def test_columns_that_are_one_are_refused(first, second, factor, tmp_path):
-    rows = {"position": 1, "force": 2, "pressure": 3}
+def test_columns_that_are_one_are_refused(first, second, factor, step, tmp_path):
+    rows = {"time": 0, "position": 1, "force": 2, "pressure": 3}
 
     def copied(samples):
-        samples[rows[second]] = factor * samples[rows[first]]
+        copy = factor * samples[rows[first]]
+        samples[rows[second]] = copy if step is None else np.round(copy / step) * step
         return samples
 
     path = tmp_path / "run.csv"
     path.write_text(Recording(spoil=copied).text())
-    refuse(path, f"columns {NAMES[first]} and {NAMES[second]} hold the same values")
+    named = [NAMES[key] for key in rows if key in (first, second)]
+    refuse(path, f"columns {named[0]} and {named[1]} hold the same values")
+
+
+def test_a_plate_that_goes_in_evenly_and_not_back_is_no_copy_of_the_time(tmp_path):
+    inward = Recording([(7.5, 6.5)])
+    assert figures(read(tmp_path, inward))["sensitivity_kPa_per_N"].value > 2
 
 
 AT_END = "stays at its greatest value"
