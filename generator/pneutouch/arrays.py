@@ -1,4 +1,4 @@
-"""Array types for annotations, distinct values of an array, stretches of flags, and cubics through given values and slopes (Hermite)."""
+"""Array types for annotations, distinct values, stretches of flags, and cubics with given slopes (Hermite)."""
 
 from typing import TypeVar
 

@@ -255,7 +255,7 @@ def test_without_a_prediction_time_and_driving_pressure_are_checked_and_magnitud
 @pytest.mark.parametrize("expected", [EXPECTED, None])
 def test_holds_that_no_unit_explains_are_a_question(tmp_path, samples, expected):
     slow = samples * np.array([[125.0], [1], [1], [1]])
-    (words,) = analyse(tmp_path, slow, expected=expected)
+    words, *_ = analyse(tmp_path, slow, expected=expected)
     assert "column time_s: holds last 3e+02 s" in words and "another protocol" in words
 
 

@@ -59,8 +59,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     indentations = find_indents(blocks, by_hand=run.kind == "hand")
     shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
     told = "kind" not in run.model_fields_set
-    if told:
-        run = run.model_copy(update={"kind": shows})
+    run = run.model_copy(update={"kind": shows} if told else {})
     touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
     if not touched:
         raise InputError(_no_contact(blocks, indentations))
@@ -94,6 +93,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
         step_error=step_share(blocks, bases) * float(np.abs(points[1]).max()) / math.sqrt(12),
         drift=_drift(blocks, indentations),
         onset_error=indentations.onset_error,
+        at_once=indentations.at_once,
         shows=shows,
         told=told,
         warnings=tuple(sorted(warnings, key=lambda warning: (warning.start, warning.end, warning.why))),

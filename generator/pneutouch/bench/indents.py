@@ -171,10 +171,14 @@ class RunIndentations:
     free: float = math.inf
 
     @property
+    def at_once(self) -> bool:
+        """True if the force rises as soon as the plate moves."""
+        return self.free < FREE * max((one.indentation for one in self.indents if one.indentation > 0), default=0.0)
+
+    @property
     def hidden(self) -> bool:
         """True if the place of `onset` is not known: read in too coarse steps, or without free travel before it."""
-        deepest = max((one.indentation for one in self.indents if one.indentation > 0), default=0.0)
-        return self.coarse > COARSE or self.free < FREE * deepest
+        return self.coarse > COARSE or self.at_once
 
     @property
     def onset_error(self) -> float:

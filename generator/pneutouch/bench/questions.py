@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -20,6 +21,9 @@ predictions meet the paper's table with a median error of 8 % and are off by a f
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """Largest difference of the pressure before contact from the driving pressure, in kPa or as a share of it, whichever is
 more: our choice, a regulator's scatter."""
+
+DRIVING_FAR = 3.0
+"""Multiple of that which no gauge zero or regulator explains: our choice."""
 
 ABSOLUTE = (0.6, 1.1)
 """Range of that difference, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
@@ -66,13 +70,33 @@ def _kind(curve: MeasuredCurve) -> str | None:
 
 def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
     """Question about a force before contact that may be a preload; None if it is small."""
-    zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
-    top = float(np.abs(curve.force).max())
-    if not zeros or abs(zeros[0]) <= LOADED * top:
+    zero, top = _before_contact(curve)
+    if abs(zero) <= LOADED * top:
         return None
     return (
-        f"column {columns.force.name}: reads {number(zeros[0])} N before contact, {abs(zeros[0]) / top:.2g} times "
+        f"column {columns.force.name}: reads {number(zero)} N before contact, {abs(zero) / top:.2g} times "
         "what the press adds; it is subtracted: a scale that was not zeroed, or was the sensor pressed already?"
+    )
+
+
+def _before_contact(curve: MeasuredCurve) -> tuple[float, float]:
+    """Force before the first contact, and the greatest that presses add, N."""
+    zeros = (one.zero_force for one in curve.indents if not math.isnan(one.contact))
+    return next(zeros, 0.0), float(np.abs(curve.force).max())
+
+
+def check_unpressed(curve: MeasuredCurve, stated_kPa: float, file: Path | str) -> None:
+    """Raise InputError for a pressure before contact that is far above the one stated where the force, too, tells that
+    the sensor was pressed: it reads much before contact, or rises as soon as the plate moves."""
+    (zero, top), read_kPa = _before_contact(curve), curve.driving / KPA
+    loaded = zero > LOADED * top
+    if read_kPa - stated_kPa <= DRIVING_FAR * max(RESET_KPA, RESET_SHARE * stated_kPa) or not (loaded or curve.at_once):
+        return
+    also = f"the force reads {number(zero)} N" if loaded else "the force rises as soon as the plate moves"
+    raise InputError(
+        f"{read_kPa:.3g} kPa before contact instead of {stated_kPa:g}, and {also}: the sensor was pressed already",
+        file=file,
+        remedy="start the recording, and zero force and gauge, clear of the dome",
     )
 
 

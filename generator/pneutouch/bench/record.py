@@ -100,6 +100,7 @@ class MeasuredCurve:
         step_error: Standard error of a force by the steps in which it is read, N; 0 where noise covers them.
         drift: Slope of the pressure before the first contact, MPa/s, and its standard error.
         onset_error: Standard error of the place of first contact, mm; infinite if it is not known.
+        at_once: True if the force rises as soon as the plate moves.
         shows: Kind of run that the plate's travel shows, whatever the campaign states.
         told: True if ``run`` has its kind from the record.
         warnings: Intervals that may be wrong.
@@ -117,6 +118,7 @@ class MeasuredCurve:
     step_error: float = 0.0
     drift: tuple[float, float] = (float("nan"), float("nan"))
     onset_error: float = float("inf")
+    at_once: bool = False
     shows: RunKind = "steps"
     told: bool = False
     warnings: tuple[SuspectInterval, ...] = field(default=())

@@ -8,7 +8,16 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.indents import HOLD, RELAXATION
-from pneutouch.bench.questions import FAR, RESET_KPA, RESET_SHARE, looks_absolute, number, run_questions
+from pneutouch.bench.questions import (
+    DRIVING_FAR,
+    FAR,
+    RESET_KPA,
+    RESET_SHARE,
+    check_unpressed,
+    looks_absolute,
+    number,
+    run_questions,
+)
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.source import exchanged, otherwise
 from pneutouch.errors import InputError, shown
@@ -23,9 +32,6 @@ UNIT_NEAR = 1.8
 BEYOND = 10.0
 """Ratio to the predicted force or rise that no other sensor explains: our choice, three times `FAR`. Above it another
 unit explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
-
-DRIVING_FAR = 3.0
-"""Multiple of the larger of `RESET_KPA` and `RESET_SHARE` that no gauge zero or regulator explains: our choice."""
 
 SWAP_MARGIN = math.log(2.0)
 """Margin (log of a factor) by which swapped readings must be nearer to the prediction, at zero driving pressure."""
@@ -289,6 +295,8 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     # No state reads below 0: that is a zero, whatever its size.
     if abs(off_kPa) <= DRIVING_FAR * near_kPa or read_kPa < 0.0:
         return f"{problem}; another run's file, or a gauge not zeroed?"
+    if not looks_absolute(off_kPa):
+        check_unpressed(curve, stated_kPa, file)
     set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"
     if looks_absolute(off_kPa):
         problem += ", which looks like an absolute pressure"

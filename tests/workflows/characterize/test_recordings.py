@@ -396,6 +396,25 @@ def test_a_tare_is_subtracted_with_a_question(tmp_path):
     assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
 
 
+@pytest.mark.parametrize("zeroed", [False, True])
+@pytest.mark.parametrize("write", [None, by_hand])
+def test_a_preload_is_no_driving_pressure(zeroed, write, tmp_path):
+    """The plate rests where the force is 5 N; zeroed there, force alone would hide it."""
+    legs = [(2.0, 4.45), *2 * [(5.0, DEEP), (5.0, 4.45), (2.0, 4.45)]]
+
+    def at_rest(samples):
+        samples = samples[:, samples[0] > 0.02]
+        samples[2] -= samples[2][:400].mean() if zeroed else 0.0
+        return samples
+
+    preloaded = Recording([(1e-4, 4.45), *legs], write=write, spoil=at_rest)
+    if zeroed and write is not None:
+        assert asked(read(tmp_path, preloaded), "kPa before contact")
+        return
+    with pytest.raises(InputError, match="pressed already"):
+        read(tmp_path, preloaded)
+
+
 def test_a_record_that_begins_in_contact_is_refused_or_asked_about(tmp_path):
     moving = Recording(presses(1), spoil=lambda s: s[:, 2500:6000])
     with pytest.raises(InputError, match="pressed"):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.questions import check_leak, looks_absolute
+from pneutouch.bench.questions import check_leak, check_unpressed, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import Blocks, MeasuredCurve, Trace, trace
 from pneutouch.bench.source import MeasuredFile, MissingChannelError, as_option, campaign_lines, identify
@@ -374,6 +374,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gat
         )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
     if not near:
+        check_unpressed(curve, nearest_kPa, curve.run.file)
         problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures: is the gauge zeroed?"
         stated = f"`pneumatics.driving_pressures_kPa`={found_kPa:g}"
         gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
