@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,25 @@ def test_times_of_day_are_seconds_from_the_first(chunk, first, form, tmp_path, m
     path = tmp_path / "run.csv"
     path.write_text("time,force_N\n" + "\n".join(rows) + "\n")
     _, (time, force) = whole(path, ["time", "force_N"])
+    np.testing.assert_allclose(time, passed, atol=1e-9)
+    np.testing.assert_allclose(force, passed)
+
+
+@pytest.mark.parametrize("chunk", [60, 4 * 2**20])
+@pytest.mark.parametrize(
+    "form", ["%m/%d/%Y %I:%M:%S.%f %p", "%d.%m.%Y %H:%M:%S.%f", "%d-%m-%y %H:%M:%S.%f", "%I:%M:%S.%f %p"]
+)
+@pytest.mark.parametrize("begin", ["2026-11-26T11:59:58", "2026-11-30T23:59:58", "2027-03-04T00:59:58"])
+def test_dates_of_any_order_and_hours_of_half_a_day_are_seconds_from_the_first(
+    chunk, form, begin, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(csv_table, "CHUNK", chunk)
+    passed = np.arange(0.0, 4.0, 0.25)
+    times = [datetime.fromisoformat(begin) + timedelta(seconds=second) for second in passed]
+    rows = [f"{time.strftime(form)};{value:.3f}" for time, value in zip(times, passed, strict=True)]
+    path = tmp_path / "run.csv"
+    path.write_text("timestamp;force_N\n" + "\n".join(rows) + "\n")
+    _, (time, force) = whole(path, ["timestamp", "force_N"])
     np.testing.assert_allclose(time, passed, atol=1e-9)
     np.testing.assert_allclose(force, passed)
 

@@ -28,7 +28,7 @@ class _Reader(NamedTuple):
     """A text table with its columns located; ``least`` and ``most`` are the numbers of cells of a row.
 
     ``stamps`` are the indices of columns with dates and times; by such an index ``begin`` has the column's first time,
-    s, and ``latest`` its latest time of day and the number of midnights before it."""
+    s, and ``latest`` its latest time of day, its date as written, and the number of midnights before it."""
 
     path: Path
     delimiter: str
@@ -39,7 +39,7 @@ class _Reader(NamedTuple):
     places: list[int]
     stamps: tuple[int, ...]
     begin: dict[int, float]
-    latest: dict[int, tuple[float, int]]
+    latest: dict[int, tuple[float, str, int]]
 
     def fault(self, row: int, problem: str, remedy: str | None = None) -> InputError:
         return InputError(problem, file=self.path, key=f"row {row}", remedy=remedy)
@@ -61,21 +61,26 @@ class _Reader(NamedTuple):
     def seconds(self, texts: Sequence[str], place: int) -> Array:
         """Seconds since the first cell of a column of dates and times. Raises ValueError for other texts.
 
-        A time of day without a date that falls by more than half a day has passed midnight."""
+        A time of day that falls by more than half a day, or another date before it, has passed midnight; so the order
+        of day and month does not matter."""
         import pandas as pd
 
         written = pd.Series(texts).str.replace(",", ".")
-        if "-" in texts[0]:
+        if texts[0][4:5] == "-":
             stamps = pd.to_datetime(written, format="ISO8601", utc=True)
             passed = stamps.astype("datetime64[ns, UTC]").astype("int64").to_numpy() * 1e-9
         else:
             # The conversion takes 61 minutes as an hour and a minute.
             if not written.str.fullmatch(STAMP).all():
                 raise ValueError("no times of day")
-            passed = pd.to_timedelta(written).dt.total_seconds().to_numpy()
-            last, days = self.latest.get(place, (float(passed[0]), 0))
-            midnights = days + np.cumsum(np.diff(passed, prepend=last) < -0.5 * _DAY)
-            self.latest[place] = float(passed[-1]), int(midnights[-1])
+            read = written.str.extract(STAMP).fillna("")
+            passed, half = pd.to_timedelta(read["clock"]).dt.total_seconds().to_numpy(), read["half"].str.upper()
+            passed = np.where(half == "", passed, passed % (0.5 * _DAY) + 0.5 * _DAY * (half == "P"))
+            dates = read["date"]
+            last, date, days = self.latest.get(place, (float(passed[0]), dates.iloc[0], 0))
+            other = dates.to_numpy() != dates.shift(fill_value=date).to_numpy()
+            midnights = days + np.cumsum(other if date else np.diff(passed, prepend=last) < -0.5 * _DAY)
+            self.latest[place] = float(passed[-1]), dates.iloc[-1], int(midnights[-1])
             passed = passed + _DAY * midnights
         first = self.begin.setdefault(place, float(passed[0]))
         return np.asarray(passed - first)

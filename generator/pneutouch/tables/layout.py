@@ -88,8 +88,12 @@ class TableLayout:
         return self.units if self.clock is None else ("s", *self.units)
 
 
-STAMP = re.compile(r"(\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?|\d\d?:[0-5]\d:[0-5]\d([.,]\d+)?)")
-"""A date with a time of day in the form of ISO 8601, or a time of day alone."""
+STAMP = re.compile(
+    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?(?:Z|[+-]\d\d:?\d\d)?"
+    r"|(?:(?P<date>\d\d?[./-]\d\d?[./-]\d{2,4}) )?"
+    r"(?P<clock>\d\d?:[0-5]\d:[0-5]\d(?:[.,]\d+)?)(?: ?(?P<half>[APap])[Mm])?"
+)
+"""A date with a time of day in the form of ISO 8601, or a time of day, of twelve hours too, alone or behind a date."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),
