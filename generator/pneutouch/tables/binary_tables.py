@@ -52,7 +52,8 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
             if not np.isfinite(values).all():
                 column, at = np.argwhere(~np.isfinite(values))[0]
                 where = f"row {rows[at]:.0f}: column {columns[column]}"
-                raise InputError("empty or no finite number", file=path, key=where, remedy="must be a number")
+                remedy = "must be a number; a recording may miss some rows: delete those without a reading"
+                raise InputError("empty or no finite number", file=path, key=where, remedy=remedy)
             row += batch.num_rows
             yield RowChunk(rows, values, (row - 2) / total, total)
 

@@ -251,7 +251,9 @@ def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
             number = reader.value(text, place)
             if number is None or not np.isfinite(number):
                 problem = f"column {name}: '{text[:40]}' is no finite number" if text else f"column {name}: empty"
-                raise reader.fault(row + k, problem, f"must be a number with a {mark}, without marks of thousands")
+                must = f"must be a number with a {mark}, without marks of thousands"
+                left_out = "; a recording may miss some rows: delete those without a reading, or begin them with #"
+                raise reader.fault(row + k, problem, must + (left_out if text.lower() in ("", "nan") else ""))
     raise InputError(f"rows {row} to {row + len(lines) - 1}: cannot be read as columns of numbers", file=reader.path)
 
 

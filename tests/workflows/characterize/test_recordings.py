@@ -466,15 +466,24 @@ def test_a_unit_that_is_wrong_is_refused_of_one_file_as_of_a_campaign(tmp_path):
     )
 
 
-def test_an_empty_cell_is_refused_with_its_row_and_column(tmp_path):
-    def emptied(samples, header):
-        rows = plain(samples, header).splitlines()
-        rows[500] = rows[500].rpartition(",")[0] + ","
-        return "\n".join(rows) + "\n"
-
+@pytest.mark.parametrize("cell", ["", "nan"])
+def test_an_empty_cell_is_refused_with_its_row_and_column_and_a_row_may_be_left_out(cell, tmp_path):
+    """As told: without such rows, or with a mark before them, the figures are those of the truth."""
+    rows = READ["triangular"].text().splitlines(keepends=True)
+    emptied = range(500, 9000, 100)
+    for at in emptied:
+        rows[at] = rows[at].rpartition(",")[0] + f",{cell}\n"
     path = tmp_path / "run.csv"
-    path.write_text(Recording(write=emptied).text())
-    refuse(path, "row 501: column pressure_kPa: empty")
+    path.write_text("".join(rows))
+    refuse(path, "row 501: column pressure_kPa", "delete those")
+    value = true_figures(depths(25))["sensitivity_kPa_per_N"]
+    for mark in ("# ", None):
+        for at in emptied:
+            rows[at] = "" if mark is None else mark + rows[at]
+        path.write_text("".join(rows))
+        measured = characterize(path, "paper-dome", model="atlas").figures
+        assert not measured.questions
+        assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
 
 
 def test_a_leak_is_told_from_its_columns(tmp_path):
