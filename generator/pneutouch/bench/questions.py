@@ -90,7 +90,7 @@ def check_unpressed(curve: MeasuredCurve, stated_kPa: float, file: Path | str) -
     the sensor was pressed: it reads much before contact, or rises as soon as the plate moves."""
     (zero, top), read_kPa = _before_contact(curve), curve.driving / KPA
     loaded = zero > LOADED * top
-    if read_kPa - stated_kPa <= DRIVING_FAR * max(RESET_KPA, RESET_SHARE * stated_kPa) or not (loaded or curve.at_once):
+    if read_kPa - stated_kPa <= max(DRIVING_FAR * RESET_KPA, RESET_SHARE * stated_kPa) or not (loaded or curve.at_once):
         return
     also = f"the force reads {number(zero)} N" if loaded else "the force rises as soon as the plate moves"
     raise InputError(

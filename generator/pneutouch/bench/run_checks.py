@@ -19,7 +19,7 @@ from pneutouch.bench.questions import (
     run_questions,
 )
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.source import exchanged, otherwise
+from pneutouch.bench.source import as_option, exchanged, otherwise
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.campaign import ColumnMap
 from pneutouch.tables.unit_words import ABSOLUTE as ABSOLUTE_UNIT
@@ -49,6 +49,8 @@ _LOST = 10.0
 _HOLD_FAR = 50.0
 _SPEEDS = 0.01, 50.0
 """Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
+_WAYS = 3
+"""Greatest number of readings of a press by hand that are asked about: our choice."""
 _WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
 _WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
@@ -104,24 +106,55 @@ def check_plausible(
 
 
 def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> str | None:
-    """Question about the rise of a press by hand at its greatest force (or the prediction's), or None. Raises
-    InputError if off by more than `BEYOND`: without the travel nothing tells which channel is wrong."""
+    """Question about the rise of a press by hand at its greatest force (or the prediction's), or None, with the
+    readings that would explain it. Raises InputError if off by more than `BEYOND`."""
     if expected.curve is None:
         return None
-    _, force, rise = expected.curve
-    reach = min(float(curve.force[-1]), float(force[-1]))
-    measured, target = float(np.interp(reach, curve.force, curve.rise)), float(np.interp(reach, force, rise))
-    ratio = measured / target
-    if 1 / FAR <= ratio <= FAR:
+    predicted = expected.curve[1:]
+    reach, measured, target = _risen(curve.force, curve.rise, predicted)
+    if 1 / FAR <= measured / target <= FAR:
         return None
     problem = (
         f"columns {columns.force.name} and {columns.pressure.name}: the pressure rises by {number(measured / KPA)} "
         f"kPa at {number(reach)} N where the prediction has {number(target / KPA)} kPa"
     )
-    why = "are they swapped, or is the unit of one of them another (`columns`; in a campaign columns.force.unit)"
-    if 1 / BEYOND <= ratio <= BEYOND:
+    ways = _read_otherwise(curve, columns, predicted)
+    why = "; ".join(ways) or "are they swapped, or is the unit of one of them another (`columns`)"
+    if 1 / BEYOND <= measured / target <= BEYOND:
         return f"{problem}: {why}, or is it {_WHY}"
     raise InputError(f"{problem}; {why}?", file=file)
+
+
+def _risen(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[float, float, float]:
+    """Greatest force that a press and its prediction share, N, and the rise of each there, MPa."""
+    reach = min(float(force[-1]), float(predicted[0][-1]))
+    return reach, float(np.interp(reach, force, rise)), float(np.interp(reach, *predicted))
+
+
+def _read_otherwise(curve: MeasuredCurve, columns: ColumnMap, predicted: tuple[Array, Array]) -> list[str]:
+    """Questions on an exchange, or on units, that bring a press by hand within `UNIT_NEAR` of its prediction, with the
+    options that say so, the nearest first, at most `_WAYS`."""
+    force, pressure = columns.force, columns.pressure
+    units, factors = (UNITS["force"], UNITS["pressure"]), (UNITS["force"][force.unit], UNITS["pressure"][pressure.unit])
+    ratio = factors[0] / factors[1]
+    turned = force.model_copy(update={"name": pressure.name}), pressure.model_copy(update={"name": force.name})
+    tries = {(0.0, 0.0): ("are they exchanged", *turned, curve.rise * ratio, curve.force / ratio)}
+    for unit, factor in units[0].items():
+        other, times = force.model_copy(update={"unit": unit}), factor / factors[0]
+        tries.setdefault((times, 1.0), (f"is the force in {unit}", other, pressure, curve.force * times, curve.rise))
+    for unit, factor in units[1].items():
+        other, times = pressure.model_copy(update={"unit": unit}), factor / factors[1]
+        if unit.endswith(ABSOLUTE_UNIT) == pressure.unit.endswith(ABSOLUTE_UNIT):
+            tries.setdefault(
+                (1.0, times), (f"is the pressure in {unit}", force, other, curve.force, curve.rise * times)
+            )
+    found: list[tuple[float, str]] = []
+    for question, one, other, *read in tries.values():
+        _, measured, target = _risen(read[0], read[1], predicted)
+        off = abs(math.log(max(measured, 1e-300) / target)) if target > 0 else math.inf
+        if off < math.log(UNIT_NEAR):
+            found.append((off, f"{question} ({as_option(force=one, pressure=other)})"))
+    return [text for _, text in sorted(found)[:_WAYS]]
 
 
 def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:

@@ -258,9 +258,9 @@ def _lagging(blocks: Blocks, indentations: RunIndentations, *, by_hand: bool) ->
 
 def _late(blocks: Blocks, key: str, first: str, lag: float, step: float) -> list[SuspectInterval]:
     """Doubt about a channel ``lag`` seconds behind ``first``, if it changes much in so short a time."""
-    values = getattr(blocks, key)
-    missed = float(np.abs(np.diff(values)).max()) * lag / step / float(np.ptp(values))
-    if lag < 2 * step or missed < _LAG_COUNTS:
+    values, late = getattr(blocks, key), min(round(lag / step), blocks.time.size - 1)
+    missed = float(np.abs(values[late:] - values[: values.size - late]).max()) / float(np.ptp(values))
+    if late < 2 or missed < _LAG_COUNTS:
         return []
     why = f"the {key} comes {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
     # Between stays a plate may go far in so short a time; the readings at the stays are right then.

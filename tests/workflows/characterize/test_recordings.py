@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.workflows.characterize.campaign import characterize
-from pneutouch.workflows.characterize.load import load_curves
+from pneutouch.workflows.characterize.load import load_curves, parse_columns
 from tests.bench.reads import refuse
 from tests.bench.recordings import (
     CLEAR,
@@ -159,10 +160,24 @@ def test_a_spike_in_a_press_by_hand_is_no_press(tmp_path):
     assert [warning.kind for warning in run.warnings] == ["spike"]
 
 
-def test_a_press_by_hand_with_another_unit_or_swapped_is_refused_without_naming_one(tmp_path):
-    for factors in ([1, 1, 102.0, 1], [1, 1, 1, 20.0]):
-        wrong = Recording(write=by_hand, spoil=lambda s, f=factors: s * np.array(f)[:, None])
-        assert "swapped" in read(tmp_path, wrong).failures[0].message
+@pytest.mark.parametrize(
+    ("turn", "word"),
+    [
+        (lambda s: s * np.array([[1], [1], [1e3], [1]]), "in mN"),
+        (lambda s: s / np.array([[1], [1], [9.80665], [1]]), "in kgf"),
+        (lambda s: s / np.array([[1], [1], [1], [6.894757]]), "in psi"),
+        (lambda s: s * np.array([[1], [1], [1], [10.0]]), "in hPa"),
+        (lambda s: s[[0, 1, 3, 2]], "exchanged"),
+    ],
+)
+def test_a_press_by_hand_in_another_unit_or_exchanged_is_told_with_the_option_that_is_right(turn, word, tmp_path):
+    wrong = Recording(write=by_hand, spoil=turn)
+    measured = read(tmp_path, wrong)
+    said = [entry.message for entry in measured.failures] or asked(measured, "where the prediction has")
+    (option,) = re.findall(rf"{word} \(give `columns` ([^)]*)\)", said[0])
+    right = read(tmp_path, wrong, reading={"columns": parse_columns(shlex.split(option))})
+    assert not right.questions and not right.failures
+    assert figures(right)["sensitivity_kPa_per_N"].value == pytest.approx(2.34, rel=0.02)
 
 
 def test_a_press_by_hand_and_one_of_a_plate_are_not_averaged(tmp_path):

@@ -374,7 +374,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gat
         )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
     if not near:
-        check_unpressed(curve, nearest_kPa, curve.run.file)
+        check_unpressed(curve, min(stated_kPa), curve.run.file)
         problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures: is the gauge zeroed?"
         stated = f"`pneumatics.driving_pressures_kPa`={found_kPa:g}"
         gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
