@@ -1,4 +1,4 @@
-"""Array types for annotations, distinct values, stretches of flags, and cubics with given slopes (Hermite)."""
+"""Array types for annotations, distinct values of an array, and cubics through given values and slopes (Hermite)."""
 
 from typing import TypeVar
 
@@ -41,12 +41,6 @@ def distinct(values: NDArray[Scalar]) -> NDArray[Scalar]:
     first = np.ones(ordered.size, dtype=bool)
     first[1:] = ordered[1:] != ordered[:-1]
     return ordered[first]
-
-
-def stretches(mask: Flags) -> list[tuple[int, int]]:
-    """Stretches of an array (n,) in which ``mask`` holds: the first place of each, and the one after its last."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def hermite(at: Array, x: Array, y: Array, slope: Array) -> Array:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, stretches
-from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval
+from pneutouch.arrays import Array, Flags
+from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval, stretches
 from pneutouch.bench.run_warnings import refreshed
 from pneutouch.bench.source import MeasuredFile, otherwise
 from pneutouch.bench.statistics import Mean
@@ -215,7 +215,12 @@ def _clipped(
 ) -> list[SuspectInterval]:
     """Suspect intervals of a channel: at the end of the instrument's range, beyond it, or at a flat top below it."""
     beyond = extreme / unit > BEYOND * top
-    spikes = _short(blocks, beyond)
+    # A stretch too short to come from the plate is a fault of the line.
+    most = max(SPIKE * blocks.rate / blocks.size, FEW)
+    short = [(start, end) for start, end in stretches(beyond) if end - start < most]
+    spikes: Flags = np.zeros(beyond.size, bool)
+    for start, end in short:
+        spikes[start:end] = True
     if (beyond & ~spikes).any():
         why = (
             f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, "
@@ -233,30 +238,12 @@ def _clipped(
     if not warnings:
         why = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
         warnings = [SuspectInterval(start, end, why, False, "clipped") for start, end in _parts(blocks, flat)]
-    return [*warnings, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
-
-
-def _short(blocks: Blocks, beyond: Flags) -> Flags:
-    """Flags (n,) of blocks in ``beyond`` that lie in stretches too short to come from the plate."""
-    most = max(SPIKE * blocks.rate / blocks.size, FEW)
-    short: Flags = np.zeros(beyond.size, bool)
-    for start, end in stretches(beyond):
-        short[start:end] = end - start < most
-    return short
-
-
-def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str) -> list[SuspectInterval]:
-    width = blocks.size / blocks.rate / 2
-    return [
-        SuspectInterval(
-            float(blocks.time[start]) - width,
-            float(blocks.time[end - 1]) + width,
-            f"{key} spike: {extreme[start:end].max():.4g} {excess}, for a moment: a fault of the line?",
-            False,
-            "spike",
-        )
-        for start, end in stretches(spikes)
-    ]
+    width, excess = blocks.size / blocks.rate / 2, f"{name}, beyond the rig's range of {top:g}, for a moment"
+    for start, end in short:
+        why = f"{key} spike: {extreme[start:end].max() / unit:.4g} {excess}: a fault of the line?"
+        at = float(blocks.time[start]) - width, float(blocks.time[end - 1]) + width
+        warnings.append(SuspectInterval(*at, why, False, "spike"))
+    return warnings
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Indices
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, RunKind
 
@@ -122,6 +122,12 @@ class MeasuredCurve:
     shows: RunKind = "steps"
     told: bool = False
     warnings: tuple[SuspectInterval, ...] = field(default=())
+
+
+def stretches(mask: Flags) -> list[tuple[int, int]]:
+    """Stretches of an array (n,) in which ``mask`` holds: the first place of each, and the one after its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
 MOST = 3000

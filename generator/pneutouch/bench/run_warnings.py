@@ -8,11 +8,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index, stretches
+from pneutouch.arrays import Index
 from pneutouch.bench.excursions import NEAR, Excursion
 from pneutouch.bench.first_contact import COARSE, Baseline, baseline, step_share
 from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, read_window
-from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation, SuspectInterval, SuspectKind
+from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation, SuspectInterval, SuspectKind, stretches
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
@@ -227,40 +227,28 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
     return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 
 
-_BEND, _MOST_LAG = 0.2, 0.6
-"""Time over which a bend of force or pressure is measured, and greatest lag that bends show, s: our choice."""
+_LAG_COUNTS, _BY_HAND, _EARLY = 0.01, 0.05, 0.2
+"""Change of a channel at its steepest over a lag, as a share of its span, above which the lag is asked about; least lag
+in s by hand, where a resin that relaxes looks like one, and of a pressure before force and travel, where a leak does:
+our choice."""
 
-_MATCHED, _BLURRED, _LAG_COUNTS = 0.9, 0.5, 0.01
-"""Correlation of the bends above which their lag is known, greatest one at other lags, and change of the channel at its
-steepest, as a share of its span, above which a lag is asked about: our choice."""
-
-_RETURNED, _LEAST, _SAME, _TRIES = 0.1, 8, 1e-9, 8
+_RETURNED, _LEAST, _SAME, _TRIES, _TRY = 0.1, 8, 1e-9, 8, 0.2
 """Share of its way in by which a plate may end a press short of its clear end, for its lag; blocks that are averaged at
-an end, and least number of refreshes; relative difference of the same reading; steps of at most `_BEND` in which a lag
-is found: our choice."""
+an end, and least number of refreshes; relative difference of the same reading; number of steps in which a lag is found,
+and the longest, s: our choice."""
 
 
 def _lagging(blocks: Blocks, indentations: RunIndentations, *, by_hand: bool) -> list[SuspectInterval]:
     """Doubt about the time between force, pressure and travel, or none."""
-    if blocks.time.size < 3:
-        return []
-    step = float(np.median(np.diff(blocks.time)))
-    lags = {key: _behind(blocks, indentations, key) for key in ("force", "pressure") if not by_hand}
-    for key, other in (("force", "pressure"), ("pressure", "force")):
-        # A plate whose place is told late has both after it: that shifts first contact and depths alike.
-        if lags and (doubt := _late(blocks, key, "travel", lags[key] - max(lags[other], 0.0), step)):
-            return doubt
-    even = np.arange(blocks.time[0], blocks.time[-1], step)
-    force, rise = (np.interp(even, blocks.time, values) for values in (blocks.force, blocks.pressure))
-    lag = _lag(force, rise, step)
-    return _late(blocks, *(("force", "pressure") if lag < 0 else ("pressure", "force")), abs(lag), step)
-
-
-def _late(blocks: Blocks, key: str, first: str, lag: float, step: float) -> list[SuspectInterval]:
-    """Doubt about a channel ``lag`` seconds behind ``first``, if it changes much in so short a time."""
-    values, late = getattr(blocks, key), min(round(lag / step), blocks.time.size - 1)
+    force, pressure = (_behind(blocks, indentations, key) for key in ("force", "pressure"))
+    least, early = _BY_HAND if by_hand else 0.0, min(force, 0.0) - pressure
+    # A plate whose place is told late has both after it: that shifts first contact and depths alike.
+    lags = [(pressure - max(force, 0.0), "pressure", "force"), (force - max(pressure, 0.0), "force", "travel")]
+    lag, key, first = max([(early if early > _EARLY else 0.0, "force", "pressure"), *lags])
+    values, step = getattr(blocks, key), float(np.median(np.diff(blocks.time)))
+    late = min(round(lag / step), blocks.time.size - 1)
     missed = float(np.abs(values[late:] - values[: values.size - late]).max()) / float(np.ptp(values))
-    if late < 2 or missed < _LAG_COUNTS:
+    if late < 2 or lag < least or missed < _LAG_COUNTS:
         return []
     why = f"the {key} comes {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
     # Between stays a plate may go far in so short a time; the readings at the stays are right then.
@@ -288,30 +276,8 @@ def _behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
             y = y - np.interp(t, t[[0, -1]], [y[:_LEAST].mean(), y[-_LEAST:].mean()])
             area += float((0.5 * (y[1:] + y[:-1])) @ np.diff(x))
             speeds += float((np.diff(y) / steps) @ np.diff(x))
-        lag -= float(np.clip(area / max(speeds, 1e-300), -_BEND, _BEND))
+        lag -= float(np.clip(area / max(speeds, 1e-300), -_TRY, _TRY))
     return lag
-
-
-def _lag(force: Array, rise: Array, step: float) -> float:
-    """Time in s by which the bends of the rise follow those of the force, both (n,) at even times; 0 if not known.
-
-    The second differences over `_BEND` are correlated. A smooth press or a resin that relaxes fast has no sharp
-    maximum."""
-    half, reach = max(round(_BEND / step), 2), round(_MOST_LAG / step)
-    if force.size < 8 * half or reach < 2:
-        return 0.0
-    bends = [x[2 * half :] - 2 * x[half:-half] + x[: -2 * half] for x in (force, rise)]
-    of_force, of_rise = (bend - bend.mean() for bend in bends)
-    scale = math.sqrt(float((of_force**2).sum() * (of_rise**2).sum()))
-    if scale == 0.0:
-        return 0.0
-    lags = np.arange(-3 * reach, 3 * reach + 1)
-    size = 2 ** (of_force.size + lags.size).bit_length()
-    match = np.fft.irfft(np.fft.rfft(of_rise, size) * np.conj(np.fft.rfft(of_force, size)), size)[lags] / scale
-    near = np.abs(lags) <= reach
-    best = int(np.argmax(np.where(near, match, -1.0)))
-    known = match[best] >= _MATCHED and float(np.abs(match[~near]).max()) <= _BLURRED
-    return step * float(lags[best]) if known else 0.0
 
 
 _KEPT, _GOES_ON, _GREAT, _TURNED = 0.6, 0.75, 0.02, 0.01
