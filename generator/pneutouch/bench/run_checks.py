@@ -21,7 +21,7 @@ from pneutouch.bench.questions import (
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.source import as_option, exchanged, otherwise
 from pneutouch.errors import InputError, shown
-from pneutouch.spec.campaign import ColumnMap
+from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.tables.unit_words import ABSOLUTE as ABSOLUTE_UNIT
 from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
@@ -132,29 +132,28 @@ def _risen(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[f
 
 
 def _read_otherwise(curve: MeasuredCurve, columns: ColumnMap, predicted: tuple[Array, Array]) -> list[str]:
-    """Questions on an exchange, or on units, that bring a press by hand within `UNIT_NEAR` of its prediction, with the
-    options that say so, the nearest first, at most `_WAYS`."""
-    force, pressure = columns.force, columns.pressure
-    units, factors = (UNITS["force"], UNITS["pressure"]), (UNITS["force"][force.unit], UNITS["pressure"][pressure.unit])
-    ratio = factors[0] / factors[1]
-    turned = force.model_copy(update={"name": pressure.name}), pressure.model_copy(update={"name": force.name})
-    tries = {(0.0, 0.0): ("are they exchanged", *turned, curve.rise * ratio, curve.force / ratio)}
-    for unit, factor in units[0].items():
-        other, times = force.model_copy(update={"unit": unit}), factor / factors[0]
-        tries.setdefault((times, 1.0), (f"is the force in {unit}", other, pressure, curve.force * times, curve.rise))
-    for unit, factor in units[1].items():
-        other, times = pressure.model_copy(update={"unit": unit}), factor / factors[1]
-        if unit.endswith(ABSOLUTE_UNIT) == pressure.unit.endswith(ABSOLUTE_UNIT):
-            tries.setdefault(
-                (1.0, times), (f"is the pressure in {unit}", force, other, curve.force, curve.rise * times)
-            )
-    found: list[tuple[float, str]] = []
-    for question, one, other, *read in tries.values():
-        _, measured, target = _risen(read[0], read[1], predicted)
+    """Questions on an exchange or a unit that brings a press by hand within `UNIT_NEAR` of its prediction, with the
+    option that says so, the nearest first, at most `_WAYS`."""
+    force, pressure, found = columns.force, columns.pressure, dict[float, str]()
+    of_force, of_pressure = UNITS["force"][force.unit], UNITS["pressure"][pressure.unit]
+
+    def consider(question: str, forces: Array, rises: Array, **read: Column) -> None:
+        _, measured, target = _risen(forces, rises, predicted)
         off = abs(math.log(max(measured, 1e-300) / target)) if target > 0 else math.inf
         if off < math.log(UNIT_NEAR):
-            found.append((off, f"{question} ({as_option(force=one, pressure=other)})"))
-    return [text for _, text in sorted(found)[:_WAYS]]
+            found.setdefault(off, f"{question} ({as_option(**read)})")
+
+    turned = force.model_copy(update={"name": pressure.name}), pressure.model_copy(update={"name": force.name})
+    values = curve.rise * of_force / of_pressure, curve.force * of_pressure / of_force
+    consider("are they exchanged", *values, force=turned[0], pressure=turned[1])
+    for unit, factor in UNITS["force"].items():
+        values = curve.force * factor / of_force, curve.rise
+        consider(f"is the force in {unit}", *values, force=force.model_copy(update={"unit": unit}))
+    for unit, factor in UNITS["pressure"].items():
+        if unit.endswith(ABSOLUTE_UNIT) == pressure.unit.endswith(ABSOLUTE_UNIT):
+            values = curve.force, curve.rise * factor / of_pressure
+            consider(f"is the pressure in {unit}", *values, pressure=pressure.model_copy(update={"unit": unit}))
+    return [found[off] for off in sorted(found)[:_WAYS]]
 
 
 def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:

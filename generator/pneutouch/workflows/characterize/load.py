@@ -147,9 +147,9 @@ _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 which the run is taken to be at that: a reset's scatter."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class CampaignData:
-    """Content of a campaign's files.
+    """Content of a campaign's files, gathered as they are read.
 
     Attributes:
         campaign: The campaign, its runs with the kinds as read; for a single file a campaign of that run.
@@ -161,21 +161,11 @@ class CampaignData:
         failures: Files that could not be read, with the message.
         questions: Data that look wrong when read, before a prediction: file, and the question.
         sources: The files that could be identified, with their columns as they were read.
+        digests, readings: Files by their content, and their readings under load, to find copies.
     """
 
     campaign: Campaign
     folder: Path
-    curves: tuple[MeasuredCurve, ...]
-    traces: dict[str, Trace]
-    injections: tuple[tuple[CampaignRun, Array, Array], ...]
-    leaks: tuple[tuple[CampaignRun, float, float], ...]
-    failures: tuple[tuple[str, str], ...]
-    questions: tuple[tuple[str, str], ...] = ()
-    sources: dict[str, MeasuredFile] = field(default_factory=dict)
-
-
-@dataclass
-class _Gathered:
     curves: list[MeasuredCurve] = field(default_factory=list)
     traces: dict[str, Trace] = field(default_factory=dict)
     injections: list[tuple[CampaignRun, Array, Array]] = field(default_factory=list)
@@ -236,11 +226,12 @@ def load_curves(
         runs = [run.model_copy(update=own) if run.resin == AS_DESIGNED else run for run in campaign.runs]
         ambient = {"ambient_pressure_kPa": scene.design.pneumatics.ambient_pressure_kPa} if of_the_day else {}
         campaign = campaign.model_copy(update={"runs": runs, **ambient})
-    gathered = _Gathered()
+    gathered = CampaignData(campaign, folder)
     ambient_kPa = campaign.ambient_pressure_kPa
     if ambient_kPa is None:
         ambient_kPa = STANDARD_ATMOSPHERE / KPA if scene is None else scene.design.pneumatics.ambient_pressure_kPa
-    sizes = [_size(folder / run.file) for run in campaign.runs]
+    paths = [folder / run.file for run in campaign.runs]
+    sizes = [path.stat().st_size if is_file(path) else 0 for path in paths]
     total = max(round(sum(sizes) / _MEGABYTE), 1)
     for place, run in enumerate(campaign.runs):
 
@@ -248,7 +239,7 @@ def load_curves(
             progress(round((before + share * size) / _MEGABYTE), total)
 
         try:
-            _read(run, campaign, folder, gathered, report, ambient_kPa * KPA)
+            _read(run, gathered, report, ambient_kPa * KPA)
         except PneutouchError as error:
             gathered.failures.append((run.file, str(error)))
         report(1.0)
@@ -261,24 +252,12 @@ def load_curves(
         gathered.curves = [_at_its_pressure(curve, scene, gathered) for curve in gathered.curves]
     as_read = {curve.run.file: curve.run for curve in gathered.curves}
     as_read |= {run.file: run for run, *_ in (*gathered.injections, *gathered.leaks)}
-    campaign = campaign.model_copy(update={"runs": [as_read.get(run.file, run) for run in campaign.runs]})
-    g = gathered
-    runs_of = tuple(g.curves), g.traces, tuple(g.injections), tuple(g.leaks)
-    return CampaignData(campaign, folder, *runs_of, tuple(g.failures), tuple(g.questions), g.sources)
+    gathered.campaign = campaign.model_copy(update={"runs": [as_read.get(run.file, run) for run in campaign.runs]})
+    return gathered
 
 
-def _size(path: Path) -> int:
-    return path.stat().st_size if is_file(path) else 0
-
-
-def _read(
-    run: CampaignRun,
-    campaign: Campaign,
-    folder: Path,
-    gathered: _Gathered,
-    progress: Callable[[float], None],
-    ambient: float,
-) -> None:
+def _read(run: CampaignRun, gathered: CampaignData, progress: Callable[[float], None], ambient: float) -> None:
+    campaign, folder = gathered.campaign, gathered.folder
     source = gathered.sources[run.file] = recognise(run, campaign, folder)
     if (first := gathered.first_of(folder / run.file, run.file)) is not None:
         raise InputError(
@@ -348,7 +327,7 @@ def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> C
     return Campaign(title=f"Run {file_name(data.name)}"[:_LONGEST], runs=[run])
 
 
-def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gathered) -> MeasuredCurve:
+def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: CampaignData) -> MeasuredCurve:
     """Curve of a single file at the design's driving pressure near the one that was read; if none is near, at the one
     read, with a question.
 
