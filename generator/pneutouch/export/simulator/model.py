@@ -21,6 +21,8 @@ from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.meridian import Segment
 from pneutouch.wording import rounded
 
+TEXTS = Path(__file__).parent
+
 _KG, _M = 1e-3, 1e-3
 
 
@@ -251,7 +253,7 @@ def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 
 def module(sensor: SimulatedSensor) -> bytes:
     """The callbacks with the table of the sensor, as a module that needs only MuJoCo."""
-    source = (Path(__file__).parent / "dome_force.py").read_text(encoding="utf-8")
+    source = (TEXTS / "dome_force.py").read_text(encoding="utf-8")
     table = pprint.pformat(plain(dome_table(sensor)), width=118, compact=True, sort_dicts=False)
     usage = (
         '\n\ndef install(model: Any, driving_pressure_kPa: float | None = None, prefix: str = "") -> DomeForce:\n'
