@@ -271,8 +271,7 @@ def volume(
         must = f"the same push must raise the pressure less over the plug than over the cap, {over_cap_kPa.value:g} kPa"
         key = f"volume-plug.{name}.pressure_kPa"
         raise InputError(f"mean {over_plug_kPa.value:g} kPa", file=source.where, key=key, remedy=must) from None
-    assembly = assemble(scene)
-    drawn_mL = assembly.drawn_volume / ML
+    drawn_mL = assemble(scene).drawn_volume / ML
     results.figure(name, "dead volume, mL", dead.value, dead.spread)
     results.figure(name, "dead volume as drawn, mL", drawn_mL)
     results.figure(name, "air in the syringe, mL", dead.value * over_cap_kPa.value / cap.ambient_pressure_kPa)

@@ -107,8 +107,7 @@ def _without_spikes(blocks: Blocks) -> Blocks:
         clean &= (blocks.time < spike.start) | (blocks.time > spike.end)
     if clean.all() or not clean.any():
         return blocks
-    arrays = {name: getattr(blocks, name)[clean] for name in BLOCK_ARRAYS}
-    return replace(blocks, **arrays)
+    return replace(blocks, **{name: getattr(blocks, name)[clean] for name in BLOCK_ARRAYS})
 
 
 def _by_force(blocks: Blocks) -> Blocks:
@@ -170,8 +169,7 @@ def _kept(
         else:
             # By hand the travel is not known, and the force stands in its place.
             reach = f"{indent.force:.4g} N" if blocks.position is blocks.force else f"{indent.indentation:.4g} mm"
-            message = f"indentation {k + 1}, {reach}, left out: {why}"
-            warnings.append(SuspectInterval(*indent.read, message, False))
+            warnings.append(SuspectInterval(*indent.read, f"indentation {k + 1}, {reach}, left out: {why}", False))
     return kept, warnings
 
 

@@ -254,6 +254,5 @@ def kind_of(blocks: Blocks, parts: list[Excursion]) -> RunKind:
     depths = [float(np.median(blocks.position[slice(*one.hold)])) for one in held]
     if np.ptp(depths) > TURN * np.ptp(blocks.position):
         return "steps"
-    times = blocks.time[[(one.clear[1] - 1, one.hold[0], one.hold[1] - 1) for one in held]]
-    way, stay = np.diff(times, axis=1).T
+    way, stay = np.diff(blocks.time[[(one.clear[1] - 1, one.hold[0], one.hold[1] - 1) for one in held]], axis=1).T
     return "relaxation" if (stay > np.maximum(LONG, way)).all() else "loop"

@@ -76,8 +76,7 @@ def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
     means, slopes, between, within = [], [], [], []
     for values, spread in ((blocks.force, blocks.force_spread), (blocks.pressure, blocks.pressure_spread)):
         part = values[start:end]
-        square = float(centred @ centred)
-        slope = float(centred @ part) / square if part.size > 2 else 0.0
+        slope = float(centred @ part) / float(centred @ centred) if part.size > 2 else 0.0
         rest = part - part.mean() - slope * centred
         means.append(float(part.mean()))
         slopes.append(slope)
@@ -92,8 +91,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
     """Baseline over the last `BEFORE` seconds at the clear end, at most its later half, so that a reset is over."""
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
-    begin = max(late, (start + end) // 2)
-    return baseline(blocks, min(begin, max(end - 4, start)), max(end, start + 1))
+    return baseline(blocks, min(max(late, (start + end) // 2), max(end - 4, start)), max(end, start + 1))
 
 
 def step_share(blocks: Blocks, bases: list[Baseline]) -> float:
@@ -262,8 +260,7 @@ def _search(loading: _Loading, bends: Array, length: float) -> tuple[Array, Arra
 def _time_at(blocks: Blocks, one: Excursion, onset: float) -> float:
     """Time at which the plate passes the onset."""
     start = max(one.clear[1] - 1, 0)
-    place = blocks.position[start : one.hold[0] + 1]
-    below = np.flatnonzero(place < onset)
+    below = np.flatnonzero(blocks.position[start : one.hold[0] + 1] < onset)
     k = start + (int(below[-1]) if below.size else 0)
     if k + 1 >= blocks.time.size or blocks.position[k + 1] <= blocks.position[k]:
         return float(blocks.time[k])

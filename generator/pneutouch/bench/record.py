@@ -166,8 +166,7 @@ def _span(values: Array, edges: Indices) -> Array:
     low, high = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
     never = values.size
     first_low = np.minimum.reduceat(np.where(values == low[within], place, never), starts)
-    first_high = np.minimum.reduceat(np.where(values == high[within], place, never), starts)
-    falls = first_high < first_low
+    falls = np.minimum.reduceat(np.where(values == high[within], place, never), starts) < first_low
     return np.stack([np.where(falls, high, low), np.where(falls, low, high)], axis=1).ravel()
 
 

@@ -58,8 +58,7 @@ def tray(
         order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
         folder = out / order.name
         check_writable(folder)
-        layout = lay(order, progress=_report)
-        record = write_tray(layout, folder, _report)
+        record = write_tray(lay(order, progress=_report), folder, _report)
         for note in record.left_out:
             notify(f"not on this tray: {note}")
         if json:

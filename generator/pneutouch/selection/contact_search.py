@@ -117,12 +117,10 @@ class ContactTrial:
     def _span(self, solve: SolveCandidate, highest: float) -> tuple[float, float]:
         """Sensitivities at zero and at the rated pressure ``highest`` (MPa); NaN if the solid has none."""
         pressures = [0.0, highest]
-        driven = float(self.pool.pressure[0])
-        solved = {driven: self.pool.figures.sensitivity}
+        solved = {float(self.pool.pressure[0]): self.pool.figures.sensitivity}
         missing = [p for p in pressures if p not in solved]
         if missing:
-            answer = solve(self.resin, self.pool, missing)
-            states = answer.states or [None] * len(missing)
+            states = solve(self.resin, self.pool, missing).states or [None] * len(missing)
             for p, state in zip(missing, states, strict=True):
                 figures = None if state is None else state.figures
                 solved[p] = np.nan if figures is None else figures.sensitivity
@@ -269,8 +267,7 @@ class _Run:
     def _follow(
         self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], rows_of: Flags
     ) -> None:
-        rows = self._rows(group, problem, pool, margin_of, rows_of)
-        close = rounded(problem, pool.take(rows))
+        close = rounded(problem, pool.take(self._rows(group, problem, pool, margin_of, rows_of)))
         refined, close = (problem, close) if self.refine is None else self.refine(problem, close)
         count = min(len(close.radius), self.each)
         solved = [self.trial(refined, close.take(np.array([i]))) for i in range(count)]

@@ -68,8 +68,7 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
     """Rows of the candidates with the greatest margin, at most one for each fraction."""
     margin_list = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
     order = np.argsort(-np.minimum(np.min(margin_list, axis=0), 1.0), kind="stable")
-    first = np.unique(pool.resin[order], return_index=True)[1]
-    return order[np.sort(first)[:_KEPT]]
+    return order[np.sort(np.unique(pool.resin[order], return_index=True)[1])[:_KEPT]]
 
 
 def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:

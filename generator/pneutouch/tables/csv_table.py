@@ -82,8 +82,7 @@ class _Reader(NamedTuple):
             midnights = days + np.cumsum(other if date else np.diff(passed, prepend=last) < -0.5 * _DAY)
             self.latest[place] = float(passed[-1]), dates.iloc[-1], int(midnights[-1])
             passed = passed + _DAY * midnights
-        first = self.begin.setdefault(place, float(passed[0]))
-        return np.asarray(passed - first)
+        return np.asarray(passed - self.begin.setdefault(place, float(passed[0])))
 
 
 def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
@@ -168,11 +167,10 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
         _check_text(data, row, reader)
     lines, spaces = data.count(b"\n"), reader.delimiter == " "
     # The parser silently ignores superfluous fields, so they are counted here; comments have other numbers of them.
-    count = data.count(reader.delimiter.encode())
     uneven = (
         spaces
         or any(mark in data for mark in _MARKS)
-        or count not in (lines * (reader.most - 1), lines * (reader.least - 1))
+        or data.count(reader.delimiter.encode()) not in (lines * (reader.most - 1), lines * (reader.least - 1))
     )
     kept = _check_widths(data, row, reader) if uneven or b'"' in data or reader.most == 1 else None
     rows = row + (np.arange(lines, dtype=float) if kept is None else kept)

@@ -181,8 +181,7 @@ def _tags(lines: Sequence[str]) -> dict[str, str]:
 
 def _delimiter(text: str) -> str:
     """Delimiter from the text after its tag, which begins with the delimiter and usually ends with its name."""
-    name = text[1:].strip(" ,;\t")
-    return _LVM_DELIMITERS.get(name) or (text[0] if text and text[0] in NAMES else "\t")
+    return _LVM_DELIMITERS.get(text[1:].strip(" ,;\t")) or (text[0] if text and text[0] in NAMES else "\t")
 
 
 def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: str) -> int:

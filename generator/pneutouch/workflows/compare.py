@@ -152,8 +152,7 @@ def of_build(folder: Path) -> PredictedColumn:
     stated = {"input-hash": str(manifest.get("input_hash", ""))}
     recipe = read_recipe(Package(folder, (), stated, recipe_text, thumbnail=False, warnings=()))
     notes = () if made_by == __version__ else (f"{folder} was built by pneutouch {made_by} (here {__version__}).",)
-    clamp = recipe.options.clamp
-    return PredictedColumn(document, recipe.scene, model, clamp, "build", str(folder), notes=notes)
+    return PredictedColumn(document, recipe.scene, model, recipe.options.clamp, "build", str(folder), notes=notes)
 
 
 def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths) -> tuple[ComparedState, str]:
@@ -304,8 +303,7 @@ def _columns(
     """Columns of one argument; a folder of results that stands ``alone`` gives its predictions too."""
     if isinstance(one, str) and one not in library.paths("designs") and Path(one).is_dir():
         return _of_folder(Path(one), changes, library, options, alone=alone)
-    source = one if isinstance(one, str) else ""
-    return [of_design(evaluate(one, changes, library=library, **options), source)]
+    return [of_design(evaluate(one, changes, library=library, **options), one if isinstance(one, str) else "")]
 
 
 def _of_folder(
@@ -341,8 +339,7 @@ def write(result: CompareResult, out: Path) -> Path:
         "comparison.json": json_bytes(versioned("comparison", document)),
         **comparison_sheet(result.record, _parts(result)),
     }
-    hashed = {"comparison": short_digest(document)}
-    write_folder(folder, with_manifest(files, result.name, hashed))
+    write_folder(folder, with_manifest(files, result.name, {"comparison": short_digest(document)}))
     return folder
 
 

@@ -104,8 +104,7 @@ def _profile(fitted: FittedMaterial) -> str | None:
     """Name of a profile that makes the material, for a cast one rather one that casts; None if none runs it."""
     material = _material(fitted)
     made = makers(material, Library.default())
-    cast = [name for name, one in made.items() if one.is_casting == material.is_cast]
-    return next(iter([*cast, *made]), None)
+    return next(iter([*[name for name, one in made.items() if one.is_casting == material.is_cast], *made]), None)
 
 
 def _material(fitted: FittedMaterial) -> Material:
@@ -141,8 +140,7 @@ def _chart(fitted: FittedMaterial) -> str:
             np.concatenate(parts) for parts in zip(*(difference(law, c) for c in fitted.choice.curves), strict=True)
         )
         curves.append(LawCurve(law.form.label, stretch, law.stress(stretch), off_at, off))
-    points = [(curve.stretch, curve.stress) for curve in fitted.choice.curves]
-    return law_chart(points, curves, fitted.largest)
+    return law_chart([(curve.stretch, curve.stress) for curve in fitted.choice.curves], curves, fitted.largest)
 
 
 def fit_material(data: Sequence[Path], options: FitOptions, library: Library | None = None) -> FittedMaterial:
@@ -167,8 +165,7 @@ def fit_material(data: Sequence[Path], options: FitOptions, library: Library | N
         neo, largest = law, puck.largest
     else:
         lengths = SpecimenSize(options.gauge_length_mm, options.width_mm, options.thickness_mm)
-        curves = [read_tension(file, lengths) for file in data]
-        choice = choose_law(curves, options.stretch_to, options.slack)
+        choice = choose_law([read_tension(file, lengths) for file in data], options.stretch_to, options.slack)
         law, neo, largest = choice.law, choice.neo_hookean, choice.largest
     fitted = FittedMaterial(tuple(data), options, law, neo, largest, choice, puck, path, "")
     return replace(fitted, text=material_file(fitted, library))
@@ -185,8 +182,7 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
         "material": fitted.text,
     }
     made = {"fit.json": json_bytes(versioned("fit", plain(report))), "fit.svg": _chart(fitted).encode()}
-    files = with_manifest(made, folder.name, inputs)
-    write_folder(folder, files)
+    write_folder(folder, with_manifest(made, folder.name, inputs))
     replace_files({fitted.path: fitted.text.encode()})
     return folder
 
@@ -248,8 +244,7 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
         measured["shore_a"] = Quantity(value=_four(float(readings.mean())), spread=spread, source=source)
     content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
     KINDS["materials"].validate(content, str(fitted.path))
-    names = ", ".join(file_name(path.name) for path in fitted.data)
-    return whole_head(_COMMAND, names) + toml_text(content)
+    return whole_head(_COMMAND, ", ".join(file_name(path.name) for path in fitted.data)) + toml_text(content)
 
 
 def _four(value: float) -> float:

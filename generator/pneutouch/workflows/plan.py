@@ -205,7 +205,6 @@ def make_plan(
 
 def _campaign_run(run: PlannedRun) -> CampaignRun:
     """Entry of a planned run in the campaign file."""
-    volumes_mL = [step.value for step in run.steps if step.action == "inject" and step.value is not None]
     return CampaignRun(
         file=run.file,
         kind=run.kind,
@@ -213,7 +212,7 @@ def _campaign_run(run: PlannedRun) -> CampaignRun:
         resin=run.resin,
         driving_pressure_kPa=run.driving_pressure_kPa,
         run=run.run,
-        volumes_mL=volumes_mL or None,
+        volumes_mL=[step.value for step in run.steps if step.action == "inject" and step.value is not None] or None,
     )
 
 

@@ -109,5 +109,4 @@ def draw(stack: VoxelStack, path: Path) -> None:
 def _stretched(labels: Labels, ratio: float) -> Labels:
     """Rows repeated or left out so that a row is as high as a column is wide: no colours are blended."""
     rows = max(1, round(len(labels) * ratio))
-    source = np.minimum(((np.arange(rows) + 0.5) / ratio).astype(np.int64), len(labels) - 1)
-    return labels[source]
+    return labels[np.minimum(((np.arange(rows) + 0.5) / ratio).astype(np.int64), len(labels) - 1)]

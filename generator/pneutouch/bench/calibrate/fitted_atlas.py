@@ -45,8 +45,7 @@ def injected(slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume:
     s, n = k.size, volume.size
     content = ambient[:, None] * (REST_VOLUME + dead[:, None] + volume)
     nodes = np.linspace(0.0, shipped().recipe.highest_volume, _NODES)
-    row = np.repeat(np.arange(s), _NODES)
-    pressure, _ = free_pressure(slices, k[row], np.tile(nodes, s))
+    pressure, _ = free_pressure(slices, k[np.repeat(np.arange(s), _NODES)], np.tile(nodes, s))
     total = REST_VOLUME + np.outer(slices.reach(k), nodes) + dead[:, None]
     gas = (pressure.reshape(s, _NODES) + ambient[:, None]) * total
     nu = np.array([np.interp(content[j], gas[j], nodes) for j in range(s)]).ravel()
@@ -136,8 +135,7 @@ class AtlasModel:
         self._last: tuple[bytes, Array, Flags] | None = None
         size, depth = sensor.dome.inner_radius, points.travel / sensor.dome.inner_radius
         deepest = float(depth.max(initial=0.0))
-        gaps = np.diff(depth, prepend=0.0, axis=1)
-        wide = depth.size > 0 and float(gaps.max()) > _GAP
+        wide = depth.size > 0 and float(np.diff(depth, prepend=0.0, axis=1).max()) > _GAP
         self._between = np.linspace(0.0, deepest, int(np.ceil(deepest / _GAP)) + 1)[1:] * size if wide else np.zeros(0)
 
     def values(self, sets: Array) -> tuple[Array, Flags]:

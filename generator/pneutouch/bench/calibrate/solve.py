@@ -65,8 +65,7 @@ class LeastSquaresProblem:
         """Residuals (N,), derivatives (N, k) and values (N,) at ``at``, and flags (N,) of values that the model has."""
         # Differences point inwards where the bound is near.
         step = np.where(at + self.step <= self.high, self.step, -self.step)
-        sets = self.chosen.full(np.vstack([at, at + np.diag(step)]))
-        values, ok = self.model.values(sets)
+        values, ok = self.model.values(self.chosen.full(np.vstack([at, at + np.diag(step)])))
         known = np.asarray(ok.all(axis=0))
         scaled = np.where(known, values, 0.0) / self.errors
         residual = scaled[0] - np.where(known, self.model.points.values, 0.0) / self.errors
@@ -76,8 +75,7 @@ class LeastSquaresProblem:
         """True if a run has lost more than `_MOST_LOST` of its values in ``use``: those not in ``known``."""
         clusters = self.model.points.clusters
         before = np.bincount(clusters[use])
-        after = np.bincount(clusters[use & known], minlength=before.size)
-        return bool((after < (1 - _MOST_LOST) * before).any())
+        return bool((np.bincount(clusters[use & known], minlength=before.size) < (1 - _MOST_LOST) * before).any())
 
     def whitened(self, rows: Array, use: Flags) -> Array:
         """Columns (n + q, j) whose scalar products are those of the columns of ``rows`` (N, j), weighted by the inverse

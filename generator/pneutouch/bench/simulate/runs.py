@@ -66,8 +66,7 @@ def simulate_run(
         raise ValueError(f"depth {max(protocol.depths):g} mm is beyond the curve, {curve.reach:g} mm")
     knots, travels = protocol.knots()
     time = np.arange(round(float(knots[-1]) * rate) + 1) / rate
-    travel = np.interp(time, knots, travels)
-    force, rise = _pressed(curve, travel, wall, 1.0 / rate)
+    force, rise = _pressed(curve, np.interp(time, knots, travels), wall, 1.0 / rate)
     rise *= 1.0 + scatter.gain * rng.standard_normal()
     set_to = curve.driving + scatter.reset * rng.standard_normal(len(protocol.depths) + 1)
     pressure = _shut_in(protocol, time, set_to, rig.drift(curve.driving), rise)
@@ -222,8 +221,7 @@ def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, r
 
     Relaxation includes the rig's drift, as a measurement does; drift excludes the wall's recovery. ``height`` is the
     dome's inside, mm; ``rate`` the sampling rate, Hz."""
-    steps = truth.protocol("steps", height, curve.reach)
-    depth, force, rise = loading(curve, steps, truth.wall)
+    depth, force, rise = loading(curve, truth.protocol("steps", height, curve.reach), truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
     deep = loading(curve, truth.protocol("saturation", height, curve.reach), truth.wall)
     deepest = figures(deep[0], deep[1], deep[2] / KPA)

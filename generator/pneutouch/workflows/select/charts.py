@@ -92,8 +92,7 @@ def _fronts(
     searched."""
     if selection.by_solid is None:
         return front(problem), None, ""
-    solver = CandidateSolver(selection.base, selection.assignments, library)
-    drawn = contact_front(problem, solver)
+    drawn = contact_front(problem, CandidateSolver(selection.base, selection.assignments, library))
     errors = drawn.median_error, drawn.greatest_error
     stated = f"curves: atlas corrected by the solid, {front_error(errors)}"
     return drawn.fronts, errors, f"{contact_text(selection.base)}; points: solid\n{stated}"

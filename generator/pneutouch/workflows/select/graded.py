@@ -287,9 +287,8 @@ def _nearest(
 def _atlas_covers(problem: SelectionProblem, pair: ResinPair, sensor: Sensor) -> bool:
     """True if the atlas covers the constant mixes of a pair."""
     middle, recipe = problem.resins[0].material, shipped().recipe
-    soft = float(pair.law.modulus_at(np.array(0.0)))
     return (
         other_contact(sensor) is None
         and material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
-        and sensor.gas.ambient_pressure <= recipe.stiffest * soft
+        and sensor.gas.ambient_pressure <= recipe.stiffest * float(pair.law.modulus_at(np.array(0.0)))
     )

@@ -246,8 +246,7 @@ def _resins(
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
         # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
-        plain = material.model_copy(update={"law": None}) if casting else material
-        wall = material_sensor(plain).wall
+        wall = material_sensor(material.model_copy(update={"law": None}) if casting else material).wall
         if not target.have.holds("materials", name):
             out[name] = "it is not on the shelf"
         elif casting_missing(scene.printer, material):

@@ -225,7 +225,6 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
 
 def _attributes(points: FinishedPoints) -> dict[str, str]:
     study, plan = points.study, points.study.plan
-    design = study.base.model_dump(mode="json")
     return {
         KEY: format_of("dataset"),
         "title": f"pneutouch sweep {plan.name}",
@@ -233,7 +232,7 @@ def _attributes(points: FinishedPoints) -> dict[str, str]:
         "model": "solid, harmonic off the axis" if plan.model == USUAL else plan.model,
         **({"closure": plan.closure} if plan.model == "membrane" else {"clamp": plan.clamp}),
         "base_design": study.name,
-        "base_design_content": json.dumps(design, sort_keys=True, ensure_ascii=False),
+        "base_design_content": json.dumps(study.base.model_dump(mode="json"), sort_keys=True, ensure_ascii=False),
         "set_for_all_points": json.dumps(plan.settings, sort_keys=True, ensure_ascii=False),
         "input_hash": study.fingerprint,
         "error_estimate": "\n".join(sorted(filter(None, points.bases))) or "no point was predicted",

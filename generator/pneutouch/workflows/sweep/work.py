@@ -249,8 +249,7 @@ def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
         for work, scene, answers in zip(left, drawn_scenes, _answers(drawn_scenes, chunk.options.model), strict=True):
             work.take(scene if isinstance(scene, Exception) else _tried(partial(_evaluated, scene, answers, library)))
         left = [work for work in left if work.result is None and work.left.driving_pressures_kPa]
-    done = [work.result for work in works if isinstance(work.result, Evaluation)]
-    values = iter(_values(done))
+    values = iter(_values([work.result for work in works if isinstance(work.result, Evaluation)]))
     return [
         work.record(next(values) if isinstance(work.result, Evaluation) else work.result, library) for work in works
     ]
@@ -359,8 +358,7 @@ def _ratings(evaluations: Sequence[Evaluation]) -> list[Rating]:
 def _of_evaluation(evaluation: Evaluation, intervals: list[Interval], rating: Rating) -> _Values:
     record = by_model(evaluation.prediction, curves=False)
     states = [state_values(*pair) for pair in zip(record.states, intervals, strict=True)]
-    point = point_values(replace(record, rating=rating_record(rating, [])))
-    return rounded((states, point), MODEL_DIGITS, NOTHING)
+    return rounded((states, point_values(replace(record, rating=rating_record(rating, [])))), MODEL_DIGITS, NOTHING)
 
 
 def _failure(error: Exception, count: int, library: Library) -> list[dict[str, Any]]:
