@@ -200,14 +200,25 @@ def test_an_unknown_material_is_refused_at_once():
     with pytest.raises(pt.InputError) as caught:
         pt.Design(material="TangoPlu")
     assert (caught.value.key, caught.value.value) == ("material", "TangoPlu")
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(material="ABS")
+    assert caught.value.key == "material"
+
+
+def test_a_wall_is_that_of_the_dome_and_the_moulds_has_its_name():
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(wall_mm=1)
+    assert caught.value.key == "wall_mm" and "wall_thickness_mm" in caught.value.remedy
+    assert pt.Design(mould_wall_mm=5).mould_wall_mm == 5.0
 
 
 @pytest.mark.slow
 def test_results_of_several_things_are_walked_through():
     prediction = pt.load("paper-dome").predict([0, 12], model="atlas")
     assert [state.driving_pressure_kPa for state in prediction] == [0, 12] and len(prediction) == 2
+    assert prediction[1] is prediction.states[1]
     found = pt.select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, materials=["TangoPlus"])
-    assert tuple(found) == found.designs and len(found) == len(found.designs) > 0
+    assert tuple(found) == found.designs and found[0] is found.designs[0] and len(found) == len(found.designs) > 0
     assert not pt.select(sensitivity_kPa_per_N=50, materials=["TangoPlus"])
 
 

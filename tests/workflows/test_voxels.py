@@ -223,6 +223,10 @@ def test_show_prints_and_draws_a_stack(written, tmp_path):
     text = CliRunner().invoke(app, ["show", str(folder)]).stdout
     assert "600 x 300 dpi, 27 um layers" in text
     assert "VeroClear" in text
+    (tmp_path / "mine.png").write_bytes(b"mine")
+    for name, code in (("section.png", 0), ("mine.png", 2)):
+        assert CliRunner().invoke(app, ["show", str(folder), "--out", str(tmp_path / name)]).exit_code == code
+    assert (tmp_path / "mine.png").read_bytes() == b"mine"
 
 
 def test_build_puts_the_stack_beside_its_own_folder(tmp_path, monkeypatch):

@@ -16,7 +16,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
-from pneutouch.catalogue.scene import membrane_material_of
+from pneutouch.catalogue.scene import check_kind, membrane_material_of
 from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.result import by_mixing_curve
@@ -106,7 +106,8 @@ class Design(show.Shown):
             self.source = DesignSource(name, whole, WHERE)
             self.file = self.source.changed({})
             if "material" in fields:
-                membrane_material_of(self.file, WHERE, Library.default())
+                resin = membrane_material_of(self.file, WHERE, Library.default())
+                check_kind(WHERE, "membrane.material", resin, "elastomer")
             for field in (keywords(DesignFile).get(one, "") for one in fields if one != "material"):
                 table, _, key = field.partition(".")
                 model = table_of(DesignFile, table) if key else None

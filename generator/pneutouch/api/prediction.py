@@ -132,6 +132,9 @@ class Prediction(show.Documented):
     def __len__(self) -> int:
         return len(self.states)
 
+    def __getitem__(self, place: int) -> PredictedState:
+        return self.states[place]
+
     @property
     def rating(self) -> Rating:
         """The rated pressure, its basis and advice that would raise it."""

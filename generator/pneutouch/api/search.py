@@ -147,6 +147,9 @@ class Selection(show.Documented):
     def __len__(self) -> int:
         return len(self.designs)
 
+    def __getitem__(self, place: int) -> Design:
+        return self.designs[place]
+
     @property
     def met(self) -> bool:
         """True if a design meets the target."""

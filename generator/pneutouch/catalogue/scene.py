@@ -190,8 +190,8 @@ def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
 
     With the ``library`` that the scene was resolved with, errors also state which profiles make a material.
     """
-    _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
-    _check_kind(scene, "connector.material", scene.connector_material, "rigid")
+    check_kind(scene.where, "membrane.material", scene.membrane_material, "elastomer")
+    check_kind(scene.where, "connector.material", scene.connector_material, "rigid")
     design, membrane = scene.design, scene.design.membrane.material
     soft = membrane if isinstance(membrane, str) else None
     _check_runs(scene, "print.profile", scene.printer, soft, scene.membrane_material, library)
@@ -210,10 +210,11 @@ def _mode(printer: Printer, *materials: Material) -> Mode:
     return mode
 
 
-def _check_kind(scene: ResolvedDesign, key: str, material: Material, kind: MaterialKind) -> None:
+def check_kind(where: str, key: str, material: Material, kind: MaterialKind) -> None:
+    """Raise InputError for a material of another kind."""
     if material.kind != kind:
         problem = f"{material.label} is {material.kind}"
-        raise InputError(problem, file=scene.where, key=key, remedy=f"it must be {kind}")
+        raise InputError(problem, file=where, key=key, remedy=f"it must be {kind}")
 
 
 def _check_runs(
@@ -270,7 +271,7 @@ def _check_mould(scene: ResolvedDesign, library: Library | None) -> None:
             value=scene.design.mould.profile,
             remedy="take the profile of a printer",
         )
-    _check_kind(scene, "mould.material", scene.mould_material, "rigid")
+    check_kind(scene.where, "mould.material", scene.mould_material, "rigid")
     _check_runs(scene, "mould.profile", scene.mould_printer, scene.design.mould.material, scene.mould_material, library)
 
 

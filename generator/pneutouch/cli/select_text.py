@@ -82,6 +82,7 @@ def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
 def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
     """A design in the columns of `HEAD`, without its rank and the other model's sensitivity."""
     pool, place = choice.pool, "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
+    ends = (f"{end:.2f}" if end >= 0.1 else f"{end:.2g}" for end in choice.span)
     return [
         choice.resin.name,
         f"{pool.radius[0]:.2f}",
@@ -93,7 +94,7 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         *([place] if selection.problem.anywhere else []),
         f"0-{pool.figures.reach:.2f}",
         choice.ends_with,
-        "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
+        "..".join(ends).replace("nan", "none"),
         f"{tenths_below(choice.rated / KPA):.1f}",
         f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
     ]

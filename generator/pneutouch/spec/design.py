@@ -271,7 +271,7 @@ class DesignFile(SparseTable):
     """A whole design file."""
 
     left_out = (CALIBRATION, "mould", "cast_ring", "accepted")
-    prefixed: ClassVar[tuple[str, ...]] = ("accepted",)
+    prefixed: ClassVar[tuple[str, ...]] = ("accepted", "mould")
 
     calibration: str | None = Field(
         default=None,

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Labels
+from pneutouch.errors import InputError
 from pneutouch.export.threemf import TRAY_RECIPE
 from pneutouch.export.threemf_read import RECIPE, Package, StoredBody, read_threemf
 from pneutouch.export.voxels.png import encode
@@ -103,7 +104,10 @@ def draw(stack: VoxelStack, path: Path) -> None:
     colours = stack.colours.copy()
     colours[0] = _BACKGROUND
     across = stack.manifest["dpi"][0]
-    replace_file(path, encode(np.concatenate([upper, gap, lower]), colours, (across, across)))
+    drawn = encode(np.concatenate([upper, gap, lower]), colours, (across, across))
+    if path.exists() and path.read_bytes() != drawn:
+        raise InputError("there is another file of this name", file=path, remedy="give another name, or delete it")
+    replace_file(path, drawn)
 
 
 def _stretched(labels: Labels, ratio: float) -> Labels:

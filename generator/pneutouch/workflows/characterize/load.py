@@ -356,5 +356,9 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: Camp
         check_unpressed(curve, min(stated_kPa), curve.run.file)
         problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures: is the gauge zeroed?"
         stated = f"`pneumatics.driving_pressures_kPa`={found_kPa:g}"
+        if column.unit.endswith(ABSOLUTE) and read_kPa < 0.0:
+            day_kPa = scene.design.pneumatics.ambient_pressure_kPa + read_kPa
+            problem = f"an absolute pressure of {day_kPa:.4g} kPa before contact: was it the ambient one of the day?"
+            stated = f"`pneumatics.ambient_pressure_kPa`={day_kPa:.4g}"
         gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
     return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))
