@@ -315,7 +315,7 @@ def test_a_travel_in_small_steps_gives_the_figures_of_the_truth(tmp_path):
 
 @pytest.mark.parametrize("spoil", [refreshed(1, 0.5), lambda s: np.vstack([s[:1], np.round(2 * s[1:2]) / 2, s[2:]])])
 def test_a_travel_read_seldom_or_in_great_steps_is_refused_and_goes_without_it(spoil, tmp_path):
-    with pytest.raises(InputError, match="`kind` hand"):
+    with pytest.raises(InputError, match="hand"):
         read(tmp_path, Recording(spoil=spoil))
     found = figures(read(tmp_path, Recording(spoil=spoil), kind="hand"))
     assert found["sensitivity_kPa_per_N"].value == pytest.approx(
@@ -426,7 +426,7 @@ def test_a_preload_is_no_driving_pressure(zeroed, write, tmp_path):
     if zeroed and write is not None:
         assert asked(read(tmp_path, preloaded), "kPa before contact")
         return
-    with pytest.raises(InputError, match="pressed already"):
+    with pytest.raises(InputError, match="pressed"):
         read(tmp_path, preloaded)
 
 
