@@ -239,8 +239,7 @@ def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:
             break
         at = np.flatnonzero(np.abs(way - levels[k]) <= near)
         first, last = int(at[0]), int(at[-1]) + 1
-        apart = all(last <= begin or first >= end for begin, end in stays)
-        if apart and last - first <= _SCATTERED * at.size:
+        if all(last <= begin or first >= end for begin, end in stays) and last - first <= _SCATTERED * at.size:
             stays.append((first, last))
     return sorted(stays)
 

@@ -144,8 +144,7 @@ def _swing(blocks: Blocks) -> str | None:
     means = np.array([part.mean() for part in parts if part.size])
     up = float((means - np.minimum.accumulate(means)).max())
     down = float((np.maximum.accumulate(means) - means).max())
-    noise = float(np.median(np.abs(np.diff(means))))
-    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), _NOISY * noise):
+    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), _NOISY * float(np.median(np.abs(np.diff(means))))):
         return None
     return (
         f"the pressure goes up and down by {number(float(np.ptp(means)) / KPA)} kPa: presses, whose force is not named?"

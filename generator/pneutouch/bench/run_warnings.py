@@ -160,8 +160,7 @@ def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
         if after.indentation < before.indentation - SAME_DEPTH:
             why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
             warnings.append(SuspectInterval(*after.hold, why, True))
-    by_depth = sorted(indents, key=lambda one: one.indentation)
-    for less, more in itertools.pairwise(by_depth):
+    for less, more in itertools.pairwise(sorted(indents, key=lambda one: one.indentation)):
         if more.indentation - less.indentation <= SAME_DEPTH:
             later = max(less, more, key=lambda one: one.contact)
             why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
@@ -221,8 +220,7 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
         return None
     base = baseline(blocks, start, end)
     change = abs(base.slope[0]) * float(blocks.time[end - 1] - blocks.time[start])
-    noise = math.sqrt(12 * base.between[0] / (end - start))
-    if change <= max(SURELY * noise, PRESSED * abs(indent.force)):
+    if change <= max(SURELY * math.sqrt(12 * base.between[0] / (end - start)), PRESSED * abs(indent.force)):
         return None
     return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 

@@ -31,8 +31,7 @@ def _processed(name: str, process: Any, context: Any, given: Any) -> Any:
     """The value of a parameter. Raises InputError if it is a number and its text is not a plain one."""
     made = process(context, given)
     texts = given if isinstance(given, list | tuple) else [given]
-    values = made if isinstance(made, list | tuple) else [made]
-    for text, value in zip(texts, values, strict=False):
+    for text, value in zip(texts, made if isinstance(made, list | tuple) else [made], strict=False):
         if isinstance(text, str) and isinstance(value, int | float) and not isinstance(value, bool):
             try:
                 plain_number(text)

@@ -209,8 +209,7 @@ def _target(path: Path | None, fields: dict[str, Any], set_: list[str], have: Pa
     setting = content.get("setting")
     if path is not None and isinstance(setting, dict) and isinstance(setting.get("base"), str):
         setting["base"] = design_inside(path.parent, setting["base"], file=path, key="setting.base")
-    tables = field_tables(SELECT_FIELDS, fields)
-    for table, values in tables.items():
+    for table, values in field_tables(SELECT_FIELDS, fields).items():
         section = content.setdefault(table, {})
         if not isinstance(section, dict):
             raise InputError("must be a table", file=path, key=table, value=section)

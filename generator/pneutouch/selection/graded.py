@@ -152,8 +152,7 @@ def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
     """Fractions of least cost, not tried yet, on the surface through the trials; None if it promises no gain."""
-    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
-    if len(known) < _FEWEST:
+    if len([trial for trial in trials if np.isfinite(trial.sensitivity).all()]) < _FEWEST:
         return None
     centre, width, best = np.array([0.5 * top, 0.5 * top]), 0.5 * top, np.inf
     for _ in range(2):

@@ -87,8 +87,7 @@ def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
         if start.startswith(mark):
             return encoding, False
     for offset, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
-        zeros = start[offset::2].count(0)
-        if zeros > _MANY * len(start) and not start[1 - offset :: 2].count(0):
+        if start[offset::2].count(0) > _MANY * len(start) and not start[1 - offset :: 2].count(0):
             return encoding, True
     if b"\0" in start:
         row = 1 + start.count(b"\n", 0, start.index(b"\0"))

@@ -105,8 +105,7 @@ def solve(problem: LeastSquaresProblem, start: Array) -> LeastSquaresSolution:
         at = solution.at
         if solution.use.sum() == problem.model.points.use.sum():
             break
-        known = problem.look(at)[3]
-        if (known & problem.model.points.use).sum() == solution.use.sum():
+        if (problem.look(at)[3] & problem.model.points.use).sum() == solution.use.sum():
             break
     return replace(solution, rounds=rounds)
 
