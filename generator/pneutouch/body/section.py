@@ -244,6 +244,5 @@ def _without(loops: list[Array], holes: list[Array]) -> list[Array]:
 
 def mesh_outline(body: Body, height: float = 0.0) -> list[Array]:
     """Loops (n, 2) of (x, z) in mm where the plane y = ``height`` - 1e-4 mm (`_ASIDE`) cuts the mesh of a body."""
-    upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
-    whole = manifold_of(upright, body.triangles)
+    whole = manifold_of(body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0]), body.triangles)
     return [np.asarray(loop) for loop in whole.slice(_ASIDE - height).to_polygons()]

@@ -133,8 +133,7 @@ def _face(edges: list[TopoDS_Edge]) -> TopoDS_Face:
     chain.Build()
     sound = ShapeFix_Shape(chain.Wire())
     sound.Perform()
-    face = BRepBuilderAPI_MakeFace(TopoDS.Wire_s(sound.Shape()), True).Face()
-    oriented = ShapeFix_Face(face)
+    oriented = ShapeFix_Face(BRepBuilderAPI_MakeFace(TopoDS.Wire_s(sound.Shape()), True).Face())
     oriented.FixOrientation()
     oriented.Perform()
     return oriented.Result()
@@ -213,8 +212,7 @@ def canonical(text: str) -> str:
 
 def _tidy(content: str) -> str:
     """An entity on one line, its numbers rounded, without blanks, whose places depend on how long the numbers are."""
-    joined = "".join(line.strip() for line in content.splitlines())
-    texts = joined.split("'")
+    texts = "".join(line.strip() for line in content.splitlines()).split("'")
     outside = [_REAL.sub(_rounded, "".join(text.split())) for text in texts[::2]]
     pieces = [piece for pair in itertools.zip_longest(outside, texts[1::2]) for piece in pair if piece is not None]
     return _OCCURRENCE.sub(r"\1'1'", "'".join(pieces))

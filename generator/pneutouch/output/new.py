@@ -65,8 +65,7 @@ def new_design(
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:
     """Write a design, every key with its value, as ``folder/name.toml``; a file is replaced only with ``overwrite``.
     Raises InputError."""
-    values = source.changed({}).model_dump(by_alias=True)
-    text = design_template(name, values, "Every key may be left out.")
+    text = design_template(name, source.changed({}).model_dump(by_alias=True), "Every key may be left out.")
     return write_design(name, folder, text, overwrite=overwrite)
 
 
@@ -140,8 +139,7 @@ def _own_profile(
     if out is not None:
         remedy = f"leave it out: a copy of one of the {kind} is found in {KINDS[kind].folder} of your folder alone"
         raise InputError("is of designs, specimens and examples", key="out", value=str(out), remedy=remedy)
-    written = _copied(kind, library.paths(kind)[source], name, None).path
-    return NewFile(written, (), profile=kind)
+    return NewFile(_copied(kind, library.paths(kind)[source], name, None).path, (), profile=kind)
 
 
 def _changed(source: DesignSource, changes: Changes, name: str | None, out: Path | None) -> NewFile:
@@ -271,8 +269,7 @@ def _resin_of(printer: Printer, name: str | None, resin: Material | None, librar
     if resin is not None:
         return name if printer.mode_for(resin) is not None else None
     known = library.all("materials", Material)
-    usual = str(DesignFile().membrane.material)
-    order = [usual, *printer.resins, *known]
+    order = [str(DesignFile().membrane.material), *printer.resins, *known]
     runs = (one for one in order if one in known and known[one].kind == "elastomer" and printer.mode_for(known[one]))
     return next(runs, None)
 
@@ -299,8 +296,7 @@ def _pressures_kPa(material: Material, design: DesignFile) -> list[float] | None
     membrane, usual_kPa = design.membrane, design.pneumatics.driving_pressures_kPa
     sensor = material_sensor(material)
     size = membrane.inner_radius_mm, membrane.wall_thickness_mm
-    limit = float(pressure(np.array(LIMIT_HEIGHT), *size, sensor.wall.shear_modulus))
-    highest_kPa = _SHARE * limit / KPA
+    highest_kPa = _SHARE * float(pressure(np.array(LIMIT_HEIGHT), *size, sensor.wall.shear_modulus)) / KPA
     if highest_kPa >= usual_kPa[-1]:
         return None
     return [0.0, *(float(f"{share * highest_kPa:.2g}") for share in (0.25, 0.5, 1.0))]

@@ -99,8 +99,7 @@ def _support(job: PrintJob) -> tuple[float, str]:
         volume = float(supported(voxels).sum()) * voxels.cube
         return volume, f"support: everything below the part and inside it, solid, in {cubes}; no carpet below the part"
     # Under each cube that nothing carries, down to the part or the tray.
-    hanging = overhangs(voxels)
-    under = (hanging[:, :, ::-1].cumsum(axis=2)[:, :, ::-1] > 0) & (voxels.label == 0)
+    under = (overhangs(voxels)[:, :, ::-1].cumsum(axis=2)[:, :, ::-1] > 0) & (voxels.label == 0)
     volume = _SPARSE * float(under.sum()) * voxels.cube
     return volume, f"support: under overhangs beyond 45 degrees, {_SPARSE:.0%} filled, bridges not spared, in {cubes}"
 

@@ -175,14 +175,13 @@ def simulated_sensor(
     tables: tuple[PressTable, ...],
 ) -> SimulatedSensor:
     """A sensor of bodies and solids; its dome has a shape, a density in g/cm3 and ``tables`` of its presses."""
-    rear = 1e-3 * min(float(body.bounds[0, 2]) for body in bodies)
     return SimulatedSensor(
         name,
         bodies,
         inertia_of(bodies, solids),
         moving_share(shape, 1e3 * density),
         1e-3 * shape.outer_height,
-        rear,
+        1e-3 * min(float(body.bounds[0, 2]) for body in bodies),
         tables,
     )
 
@@ -293,8 +292,7 @@ def mjcf(sensor: SimulatedSensor) -> bytes:
     assets = add(root, "asset")
     for body in sensor.bodies:
         add(assets, "mesh", name=f"{name}_{body.name}", file=f"{body.name}.stl", scale="0.001 0.001 0.001")
-    world = add(root, "worldbody")
-    base = add(world, "body", name=name)
+    base = add(add(root, "worldbody"), "body", name=name)
     _inertial(base, sensor.inertia.without(sensor.moving))
     for body in sensor.bodies:
         # The convex hull of the membrane would hold the dome, which moves.
@@ -307,8 +305,7 @@ def mjcf(sensor: SimulatedSensor) -> bytes:
     add(outputs, "jointpos", name=f"{name}_indentation_m", joint=f"{name}_indentation")
     for what in ("force_N", "pressure_kPa", "status"):
         add(outputs, "user", name=f"{name}_{what}", dim=1, needstage="pos")
-    numbers = add(root, "custom")
-    add(numbers, "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
+    add(add(root, "custom"), "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
     return xml_document(root)
 
 
@@ -318,8 +315,7 @@ def _dome(base: ElementTree.Element, sensor: SimulatedSensor, table: PressTable)
     moving = sensor.moving
     at = (0.0, 0.0, float(moving.centre[2]) - centre)
     add(dome, "inertial", pos=vector(at), mass=moving.mass, diaginertia=vector(moving.about_centre.diagonal()))
-    joint = f"{name}_indentation"
-    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature)
+    add(dome, "joint", name=f"{name}_indentation", type="slide", axis="0 0 -1", armature=sensor.armature)
     add(dome, "geom", name=f"{name}_dome", type="sphere", size=sensor.radius, rgba="0.3 0.5 0.7 0.5", **_CONTACT)
     add(dome, "site", name=f"{name}_contact", pos=vector((0.0, 0.0, sensor.radius)), size="0.0005")
 

@@ -101,8 +101,7 @@ def mould_filling(mould: MouldAssembly) -> MouldFilling | None:
     material = mould.scene.membrane_material
     if material.casting is None or material.casting.mixed_viscosity_Pa_s is None:
         return None
-    viscosity = material.casting.mixed_viscosity_Pa_s.most
-    return filling(mould.size, viscosity, material.density_g_per_cm3.nominal)
+    return filling(mould.size, material.casting.mixed_viscosity_Pa_s.most, material.density_g_per_cm3.nominal)
 
 
 def check_mould_filling(mould: MouldAssembly) -> list[Finding]:
@@ -276,8 +275,7 @@ def _bubble(part: PrintPart, context: SensorContext, casting: Casting) -> float:
     assert casting.mixed_viscosity_Pa_s is not None
     seconds = 60 * max(_left_min(casting), 1.0)
     speed = 1e-3 * context.sensor.dome.shape.outer_height / seconds
-    radius = np.sqrt(4.5 * casting.mixed_viscosity_Pa_s.nominal * speed / _weight(part))
-    return float(2e3 * radius)
+    return float(2e3 * np.sqrt(4.5 * casting.mixed_viscosity_Pa_s.nominal * speed / _weight(part)))
 
 
 def _pole(context: SensorContext) -> tuple[float, float, float]:
