@@ -269,7 +269,8 @@ def _undecided(
     where = f"the header '{', '.join(names)[:80]}'" + (f" (row {layout.header_row})" if layout.header_row else "")
     if layout.header_row is None and all(name.startswith("#") for name in layout.names):
         where = f"a table without header (row {layout.first_row} holds numbers; #1 is its first column)"
-    text = "; ".join(_problem(key, [names[k] for k in places]) for key, places in open_.items())
+    few = {0: "no column of {0}", 1: "no unit of the {0}"}
+    text = "; ".join(few.get(len(at), f"{len(at)} columns may be the {{0}}").format(key) for key, at in open_.items())
     missing = not open_[first]
     key = f"column {getattr(columns, first).name if missing else names[open_[first][0]]}"
     problem = f"{'missing from' if missing else 'in'} {where}: {text}"
@@ -282,14 +283,6 @@ def _undecided(
     error = MissingChannelError(problem, file=path, key=key, remedy=remedy)
     error.channels = tuple(open_)
     return error
-
-
-def _problem(key: str, names: Sequence[str]) -> str:
-    if not names:
-        return f"no column of {key}"
-    if len(names) > 1:
-        return f"{len(names)} columns may be the {key}"
-    return f"no unit of the {key}"
 
 
 def _called(layout: TableLayout, place: int) -> str:

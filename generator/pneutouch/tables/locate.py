@@ -106,17 +106,14 @@ def _next(rows: Sequence[Sequence[str]], at: int) -> int | None:
 def _above(rows: Sequence[Sequence[str]], first: int, width: int) -> tuple[int | None, int | None]:
     """Indices of the header and of the row of units above the first numbers, None for each that is missing."""
     above = [k for k in range(first) if any(rows[k])][-2:]
-    near = [k for k in above if _fits(rows[k], width)]
+    # A header may have one cell less than the numbers, or one more that is empty.
+    empty = [k for k in above if len(rows[k]) == width + 1 and rows[k][-1].lower() in ("", _REMARK)]
+    near = [k for k in above if k in empty or len(rows[k]) in (width, width - 1)]
     if not near or near[-1] != above[-1]:
         return None, None
     if _are_units(rows[near[-1]]) and len(near) == 2:
         return near[0], near[1]
     return near[-1], None
-
-
-def _fits(row: Sequence[str], width: int) -> bool:
-    """True if a row can be the header of rows with ``width`` cells: with one cell less, or one more that is empty."""
-    return len(row) in (width, width - 1) or (len(row) == width + 1 and row[-1].lower() in ("", _REMARK))
 
 
 def _are_units(row: Sequence[str]) -> bool:
@@ -151,8 +148,12 @@ def is_lvm(lines: Sequence[str]) -> bool:
 def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLayout:
     """Layout of a LabVIEW file. Raises InputError for an incomplete header, or times that differ between channels."""
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
-    tags = _tags(lines[: ends[0]] if ends else lines)
-    delimiter = given.delimiter or _delimiter(tags.get("Separator", ""))
+    heads, top = ("Separator", "Decimal_Separator", "X_Columns"), lines[: ends[0]] if ends else lines
+    # The text after a tag begins with the delimiter; that of the delimiter's usually ends with its name.
+    tags = {head: line[len(head) :] for line in top for head in heads if line.startswith(head)}
+    text = tags.get("Separator", "")
+    named = _LVM_DELIMITERS.get(text[1:].strip(" ,;\t")) or (text[0] if text and text[0] in NAMES else "\t")
+    delimiter = given.delimiter or named
     mark = tags.get("Decimal_Separator", "\t.")[1:].strip() or "."
     decimal = given.decimal or (mark[0] if mark[0] in DECIMALS else ".")
     names = [k for k in range(ends[1] + 1, len(lines)) if not blank(lines[k], "\t")] if len(ends) > 1 else []
@@ -171,17 +172,6 @@ def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLay
     numbers = [cells(line, delimiter) for line in lines[header + 1 :] if not blank(line, delimiter)]
     layout = replace(layout, least=_least(columns, numbers, decimal))
     return _with_clock(path, layout, segment, numbers) if tags.get("X_Columns", "")[1:].strip() == "No" else layout
-
-
-def _tags(lines: Sequence[str]) -> dict[str, str]:
-    """Text after each known tag; it begins with the delimiter."""
-    heads = ("Separator", "Decimal_Separator", "X_Columns")
-    return {head: line[len(head) :] for line in lines for head in heads if line.startswith(head)}
-
-
-def _delimiter(text: str) -> str:
-    """Delimiter from the text after its tag, which begins with the delimiter and usually ends with its name."""
-    return _LVM_DELIMITERS.get(text[1:].strip(" ,;\t")) or (text[0] if text and text[0] in NAMES else "\t")
 
 
 def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: str) -> int:

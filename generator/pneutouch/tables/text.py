@@ -164,7 +164,9 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
         raise InputError(problem, file=path, key=f"row {begin + top + 1}", remedy=remedy)
     below = rows if header is None else rows[header + 1 :]
     delimiter, decimal = _written(below, replace(given, delimiter=delimiter))
-    delimiter = delimiter or _of_header(rows, header)
+    # A table without numbers, which would decide it, has the delimiter that gives its header most cells.
+    text = "" if header is None else rows[header]
+    delimiter = delimiter or max((",", ";", "\t"), key=lambda mark: len(cells(text, mark)))
     table = [_cells(line, delimiter) for line in rows]
     located = locate(table, decimal, header)
     if located is None:
@@ -216,12 +218,6 @@ def _written(rows: Sequence[str], given: TableFormat) -> tuple[str | None, str]:
             if score > best:
                 best, chosen = score, (delimiter, decimal)
     return chosen
-
-
-def _of_header(rows: Sequence[str], header: int | None) -> str:
-    """Delimiter that gives a header most cells; for tables without numbers, which would decide it."""
-    text = "" if header is None else rows[header]
-    return max((",", ";", "\t"), key=lambda delimiter: len(cells(text, delimiter)))
 
 
 def _check_header(path: Path, table: Sequence[Sequence[str]], located: Located, begin: int, delimiter: str) -> None:

@@ -124,15 +124,11 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
         )
     uncertainty = answer.evaluation.uncertainty[answer.place]
     predicted = _figures(state, uncertainty, depths_of(group, state))
-    return GroupComparison(group, label, state, uncertainty, predicted, published=_published(answer.evaluation, group))
-
-
-def _published(evaluation: Evaluation, group: RunGroup) -> dict[str, float]:
-    """Sensitivity in Table S1, kPa/N, if the sensor is the paper's and was measured at this driving pressure; else
-    empty."""
-    known = published_sensitivities(evaluation.sensor, evaluation.scene.membrane_material)
+    # In kPa/N, if the sensor is the paper's and was measured at a driving pressure of its Table S1.
+    known = published_sensitivities(answer.evaluation.sensor, answer.evaluation.scene.membrane_material)
     at = [value for pressure, value in known.items() if math.isclose(pressure, group.key.driving_pressure_kPa)]
-    return {SENSITIVITY_KEY: at[0]} if at else {}
+    published = {SENSITIVITY_KEY: at[0]} if at else {}
+    return GroupComparison(group, label, state, uncertainty, predicted, published=published)
 
 
 def depths_of(group: RunGroup, state: SensorState) -> list[list[Array]]:
