@@ -71,9 +71,7 @@ def export_reader(
             notify(result.note)
         off_percent = result.record.difference.nominal_percent
         if off_percent > 0.5:
-            less = (
-                f"less travel than {result.record.box.indentation_mm[1]:.3g} mm (`indentation.depth_mm`) lessens that"
-            )
+            less = f"--set indentation.depth_mm=VALUE below {result.record.box.indentation_mm[1]:.3g} lessens that"
             notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, above 0.5 %; {less}")
         if json:
             print_json({**result.document, "folder": str(folder)})
