@@ -192,6 +192,8 @@ def _group(group: "MeasuredGroup") -> list[str]:
     depth, whole = group.depth_mm, group.predicted_range_mm
     if depth and whole and abs(depth / whole - 1) > _SHALLOWER:
         lines.append(f"  predicted at the depths measured, to {depth:.3g} mm; `predict` goes to {whole:.3g} mm")
+    if depth is None:
+        lines.append("  by hand: lines over even forces; over even travels, as with a plate, they have other slopes")
     if group.why_not_predicted:
         lines.append(f"  not predicted: {group.why_not_predicted}")
     for key, entry in group.figures.items():
