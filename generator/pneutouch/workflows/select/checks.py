@@ -155,7 +155,7 @@ def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgeme
         findings = check(subject_of(assemble(scene))) if evaluation is None else evaluation.findings_alone
     except PneutouchError as error:
         return Judgement((None, "; ".join(part for part in (error.problem, error.remedy) if part)))
-    broken = next(((f.rule, f"{f.body}: {f.message}") for f in findings if f.severity == "error"), None)
+    broken = next(((f.rule, f"{f.body}: {f.message}; {f.fix}") for f in findings if f.severity == "error"), None)
     return Judgement(broken, evaluation)
 
 

@@ -252,7 +252,8 @@ def dropped_lines(selection: SelectionRun, relief: Relief = NO_RELIEF, typed: Ty
         known = relief.options.get(dropped.requirement)
         option = "" if known is None else f": {typed(*known)}"
         lines.append(f"without the requirement on {dropped.requirement} alone a design fits: {needs}{option}")
-    return lines or ["no design fits with any single requirement dropped"]
+    none = "no design fits with any single requirement dropped" if selection.problem.resins else "no resin was searched"
+    return lines or [none]
 
 
 def relief_lines(selection: SelectionRun, relief: Relief, typed: Typed) -> list[str]:
@@ -278,7 +279,7 @@ def left_out_lines(selection: SelectionRun) -> list[str]:
     box = shipped().recipe
     walls = f"searched: walls of {box.thinnest:g} to {box.thickest:g} R0, which the atlas covers"
     lines = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
-    return lines if selection.answer.designs else [*lines, walls]
+    return lines if selection.answer.designs or not selection.problem.resins else [*lines, walls]
 
 
 def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
@@ -374,5 +375,5 @@ def rated_warning(selection: GradedSelectionRun) -> str | None:
         return None
     return (
         f"{highest / KPA:g} kPa is above the grade's rated pressure of {tenths_below(best.rated / KPA):.1f} kPa: its "
-        "modulus follows from an assumed mixing curve; measure it on coupons before driving it so far"
+        "modulus follows from an assumed mixing curve; measure it on coupons first, or ask for no more than that"
     )
