@@ -103,11 +103,12 @@ def step_share(blocks: Blocks, bases: list[Baseline]) -> float:
 
 def showing_contact(blocks: Blocks, bases: list[Baseline]) -> tuple[Blocks, list[Baseline]]:
     """Blocks and bases with, in place of a force whose steps hide first contact, a pressure that is finer."""
-    if step_share(blocks, bases) <= COARSE:
+    if step_share(blocks, bases) <= COARSE and not blocks.joined[0]:
         return blocks, bases
     turned = replace(blocks, force=blocks.pressure, force_spread=blocks.pressure_spread, steps=blocks.steps[::-1])
     swapped = [Baseline(base.start, base.end, *(pair[::-1] for pair in base[2:])) for base in bases]
-    return (turned, swapped) if step_share(turned, swapped) < step_share(blocks, bases) else (blocks, bases)
+    finer = blocks.joined[0] > blocks.joined[1] or step_share(turned, swapped) < step_share(blocks, bases)
+    return (turned, swapped) if finer else (blocks, bases)
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:

@@ -213,7 +213,7 @@ def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
     )
     first = next((one for one, contact in zip(parts, contacts, strict=True) if contact is not None), None)
     free = math.inf if first is None or by_hand else onset - float(blocks.position[slice(*first.clear)].min())
-    coarse = 0.0 if by_hand else step_share(seen, levels)
+    coarse = 0.0 if by_hand else max(step_share(seen, levels), min(blocks.joined))
     return RunIndentations(parts, bases, contacts, indents, pressed, sign, least, onset, coarse, free)
 
 

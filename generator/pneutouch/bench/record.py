@@ -34,6 +34,7 @@ class Blocks:
     ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them,
     ``first_row`` the row of the file (the header is row 1) with which each block begins. ``rate`` is the sampling rate
     of the file, Hz; ``steps`` the least changes between two of its samples of force and pressure, 0 without any;
+    ``joined`` the greatest shares of a press between two readings of them that lines join, 0 without such lines;
     ``columns`` those that were read."""
 
     file: Path
@@ -50,6 +51,7 @@ class Blocks:
     pressure_extreme: Array
     warnings: tuple[SuspectInterval, ...] = ()
     steps: tuple[float, float] = (0.0, 0.0)
+    joined: tuple[float, float] = (0.0, 0.0)
     columns: ColumnMap = field(default_factory=ColumnMap)
 
 

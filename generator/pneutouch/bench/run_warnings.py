@@ -87,6 +87,9 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
         warnings += _of_one(number, indent, blocks, indentations, usual, not turns)
     if not turns:
         warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
+    if (share := max(blocks.joined)) > _FAST and run.kind not in ("steps", "saturation"):
+        why = f"between two readings of a slow gauge the press goes {share:.0%} of its way: press slower"
+        warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked"))
     warnings += _lagging(blocks, indentations, by_hand=run.kind == "hand")
     # By hand the stretch before contact is found by the force itself, and ends a little late for a slope.
     return warnings if run.kind == "hand" else warnings + _leak(blocks, indentations) + _place(blocks, indentations)
@@ -101,6 +104,8 @@ def _place(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterva
                 f"first contact is hidden by steps of {blocks.steps[0]:.2g} N and {blocks.steps[1] / KPA:.2g} kPa, and "
                 "figures over travel are uncertain by more than 2 %: can the instruments be set to a finer range?"
             )
+    elif min(blocks.joined) > 0.0:
+        why = "first contact lies between two readings of slow gauges: press slower, for figures over travel"
     elif indentations.hidden:
         why = (
             f"the plate moves {max(indentations.free, 0.0):.2g} mm before the force rises, so first contact was not "
@@ -245,7 +250,7 @@ def _lagging(blocks: Blocks, indentations: RunIndentations, *, by_hand: bool) ->
     lag, key, first = max([(early if early > _EARLY else 0.0, "force", "pressure"), *lags])
     values, step = getattr(blocks, key), float(np.median(np.diff(blocks.time)))
     late = min(round(lag / step), blocks.time.size - 1)
-    missed = float(np.abs(values[late:] - values[: values.size - late]).max()) / float(np.ptp(values))
+    missed = float(np.abs(values[late:] - values[: values.size - late]).max()) / max(float(np.ptp(values)), 1e-300)
     if late < 2 or lag < least or missed < _LAG_COUNTS:
         return []
     why = f"the {key} comes {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
@@ -278,10 +283,11 @@ def _behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
     return lag
 
 
-_KEPT, _GOES_ON, _GREAT, _TURNED = 0.6, 0.75, 0.02, 0.01
+_KEPT, _GOES_ON, _GREAT, _TURNED, _FAST = 0.6, 0.75, 0.02, 0.003, 0.3
 """Share of the blocks that repeat the one before, and of another channel's way that it makes meanwhile, from which on a
-channel is refreshed seldom; steps of the travel, as a share of its span, that are too great for figures over it; share
-of the span by which a channel leaves its straight line between refreshes where the plate turns: our choice."""
+channel is refreshed seldom; steps of the travel, as a share of its span, that are too great for figures over it; shares
+of its span by which a channel leaves its straight line between refreshes where the plate turns, and that the other may
+go between two: our choice."""
 
 
 def refreshed(blocks: Blocks, channels: Sequence[str]) -> tuple[Blocks, list[SuspectInterval]]:
@@ -290,8 +296,12 @@ def refreshed(blocks: Blocks, channels: Sequence[str]) -> tuple[Blocks, list[Sus
 
     Raises InputError for a travel whose steps are great while force and pressure go on."""
     notes = []
-    for key, other in (("position", "force"), ("force", "pressure"), ("pressure", "force")):
-        at = _refreshes(blocks, key, other) if {key, other} <= set(channels) else None
+    others = {"position": ("force", "pressure"), "force": ("pressure", "position"), "pressure": ("force", "position")}
+    for key in (one for one in others if one in channels):
+        # The other channel must itself be read more often.
+        live = (one for one in others[key] if one in channels and _refreshes(blocks, one, key) is None)
+        found = ((one, _refreshes(blocks, key, one)) for one in live)
+        other, at = next((one for one in found if one[1] is not None), ("", None))
         if at is None:
             continue
         span, follows, time = np.ptp(getattr(blocks, key)), getattr(blocks, other), blocks.time
@@ -310,10 +320,11 @@ def refreshed(blocks: Blocks, channels: Sequence[str]) -> tuple[Blocks, list[Sus
         alike = np.polyval(np.polyfit(follows[at], values, 3), follows)
         turn = alike - np.interp(time, time[at], alike[at])
         line += np.where(np.abs(turn) > _TURNED * span, turn, 0.0)
-        blocks = replace(blocks, **{key: line, f"{key}_extreme": np.abs(line)})
-        why = f"the {key} refreshes only every {float(np.median(np.diff(time[at]))):.2g} s"
-        why += "; between two readings a straight line is taken"
-        notes.append(SuspectInterval(float(time[0]), float(time[-1]), why, True))
+        share = float(np.abs(np.diff(follows[at])).max() / np.ptp(follows))
+        joined = (share, blocks.joined[1]) if key == "force" else (blocks.joined[0], share)
+        blocks = replace(blocks, joined=joined, **{key: line, f"{key}_extreme": np.abs(line)})
+        every = f"refreshes only every {float(np.median(np.diff(time[at]))):.2g} s; its readings are joined by lines"
+        notes.append(SuspectInterval(float(time[0]), float(time[-1]), f"the {key} {every}", True))
     return blocks, notes
 
 

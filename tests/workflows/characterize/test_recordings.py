@@ -285,12 +285,15 @@ def test_a_channel_behind_a_slow_filter_is_asked_about_by_its_time(row, channel,
     assert not slower.questions and figures(slower)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
 
 
-def refreshed(row, seconds):
-    """A channel whose reading changes only once in so many seconds."""
+def refreshed(rows, seconds, apart=0.0):
+    """Channels whose readings change only once in so many seconds, at moments ``apart`` seconds apart."""
 
     def kept(samples):
         count = round(seconds * 500)
-        samples[row] = samples[row][np.arange(samples.shape[1]) // count * count]
+        for k, row in enumerate(rows):
+            late = round(k * apart * 500)
+            places = (np.arange(samples.shape[1]) - late) // count * count + late
+            samples[row] = samples[row][np.maximum(places, 0)]
         return samples
 
     return kept
@@ -298,13 +301,29 @@ def refreshed(row, seconds):
 
 @pytest.mark.parametrize("seconds", [0.05, 0.1, 0.25, 1 / 3, 0.5])
 @pytest.mark.parametrize("row", [2, 3])
-def test_a_gauge_that_refreshes_slowly_gives_the_figures_of_the_truth(row, seconds, tmp_path):
-    measured = read(tmp_path, Recording(spoil=refreshed(row, seconds)))
+@pytest.mark.parametrize("name", ["triangular", "sine"])
+def test_a_gauge_that_refreshes_slowly_gives_the_figures_of_the_truth(name, row, seconds, tmp_path):
+    recording = replace(READ[name], spoil=refreshed((row,), seconds))
+    measured = read(tmp_path, recording)
     assert not measured.questions and any("refresh" in warning.why for warning in measured.runs[0].warnings)
-    for key, value in true_figures(depths(25)).items():
+    for key, value in true_figures(recording.at()).items():
         figure = figures(measured)[key]
         inside = figure.low is not None and figure.low <= value <= figure.high
         assert inside or figure.value == pytest.approx(value, rel=0.02), key
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.04])
+@pytest.mark.parametrize("seconds", [0.1, 0.5])
+def test_two_slow_gauges_leave_the_place_of_contact_open(seconds, apart, tmp_path):
+    measured = read(tmp_path, Recording(spoil=refreshed((2, 3), seconds, apart)))
+    assert asked(measured, "first contact lies between") and figures(measured)["stiffness_N_per_mm"].low is None
+    value = true_figures(depths(25))["sensitivity_kPa_per_N"]
+    assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+
+
+@pytest.mark.parametrize("row", [2, 3])
+def test_a_gauge_too_slow_for_a_press_is_asked_about(row, tmp_path):
+    assert asked(read(tmp_path, replace(READ["hold"], spoil=refreshed((row,), 0.5))), "press slower")
 
 
 def test_a_travel_in_small_steps_gives_the_figures_of_the_truth(tmp_path):
@@ -313,7 +332,7 @@ def test_a_travel_in_small_steps_gives_the_figures_of_the_truth(tmp_path):
         assert found[key].value == pytest.approx(value, rel=0.02), key
 
 
-@pytest.mark.parametrize("spoil", [refreshed(1, 0.5), lambda s: np.vstack([s[:1], np.round(2 * s[1:2]) / 2, s[2:]])])
+@pytest.mark.parametrize("spoil", [refreshed((1,), 0.5), lambda s: np.vstack([s[:1], np.round(2 * s[1:2]) / 2, s[2:]])])
 def test_a_travel_read_seldom_or_in_great_steps_is_refused_and_goes_without_it(spoil, tmp_path):
     with pytest.raises(InputError, match="hand"):
         read(tmp_path, Recording(spoil=spoil))
