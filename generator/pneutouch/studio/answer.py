@@ -127,8 +127,7 @@ class Answers:
         design = None
         if drawn is not None:
             design = PageLine(_drawn(drawn.driving_pressure_kPa), _drawn(drawn.sensitivity), model="atlas")
-        curves = PageCurves(design)
-        return answer(outside=None, prediction=prediction, curves=curves)
+        return answer(outside=None, prediction=prediction, curves=PageCurves(design))
 
     def intervals(self, question: Question) -> PredictedDesign:
         """Prediction by the atlas with intervals, curve and band, and all resins. Raises InputError at the field."""

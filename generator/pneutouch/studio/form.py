@@ -97,8 +97,7 @@ def target_form(library: Library, bases: Mapping[str, str]) -> TargetForm:
 
 def _example_target() -> dict[str, str]:
     """The first shipped target as texts by ``table.key``, as the form sends it."""
-    example = next(each for each in examples().values() if each.kind == "target")
-    tables = read_toml(example.path)
+    tables = read_toml(next(each for each in examples().values() if each.kind == "target").path)
     content = {f"{table}.{key}": value for table, fields in tables.items() for key, value in fields.items()}
     pairs = (text.partition("=") for text in assignments(content))
     return {name: value for name, _, value in pairs}
@@ -372,5 +371,4 @@ def _check_open(name: str, path: Path, bases: Mapping[str, str], library: Librar
     if name not in bases or not Path(bases[name]).is_file():
         return
     if Path(bases[name]).resolve() != path.resolve():
-        problem = f"{bases[name]} is open by this name"
-        raise InputError(problem, key="name", value=name, remedy="give another name")
+        raise InputError(f"{bases[name]} is open by this name", key="name", value=name, remedy="give another name")

@@ -331,9 +331,8 @@ def serve(design: str | None, port: int, opened: Callable[[str], None]) -> None:
             remedy = "give another port, or none for a free one"
             raise InputError(f"cannot be used: {error}", key="port", value=port, remedy=remedy) from None
         bound = listener.getsockname()[1]
-        guarded = application(bases, first, bound, token)
         config = uvicorn.Config(
-            guarded,
+            application(bases, first, bound, token),
             log_config=None,
             log_level="critical",
             access_log=False,

@@ -70,12 +70,11 @@ def described(measured: CampaignReport) -> Sheet:
 
 def _blocks(measured: CampaignReport, groups: list[ResinGroups]) -> list[SheetBlock]:
     aged = plots.ageings(measured)
-    table = tables.ageing_table(measured)
     return [
         verdict_box(measured),
         Tiles(tiles(measured)),
         *section("Measured and predicted", Plots(_plots(measured, groups))),
-        *([] if aged is None else section("Ageing", Columns(((aged,), (table,))))),
+        *([] if aged is None else section("Ageing", Columns(((aged,), (tables.ageing_table(measured),))))),
         *(block for group in groups for block in tables.resin_section(group)),
         *tables.lists(measured),
         *tables.specimen_section(groups),
@@ -112,8 +111,7 @@ def verdict_box(measured: CampaignReport) -> FramedBlocks:
         [v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts
     ]
     table = [SheetTable(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
-    notes = Text(" ".join(_notes(measured)), "muted")
-    return FramedBlocks(whole_verdict(measured.verdicts), [*table, notes])
+    return FramedBlocks(whole_verdict(measured.verdicts), [*table, Text(" ".join(_notes(measured)), "muted")])
 
 
 def _notes(measured: CampaignReport) -> list[str]:
@@ -235,7 +233,6 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
     )
     design = scene.design.membrane
     keys = sorted((one.group.key for one in measured.comparisons), key=lambda key: key.age_days)
-    ages = {key.age_days: key.age for key in keys}
     return [
         ["Laboratory", campaign.lab or "not named"],
         ["Dates", dates(measured)],
@@ -246,7 +243,7 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
         ["Runs", enumerated([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        ["Ages", enumerated(list(ages.values())) or "none"],
+        ["Ages", enumerated(list({key.age_days: key.age for key in keys}.values())) or "none"],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
     ]

@@ -322,8 +322,7 @@ def _mixed(item: CouponItem, *, first: bool) -> str:
     lines = [f"[[{path}]]", f"fraction = {value_text(item.blend.fraction)}"] if first else []
     if item.coupon.name != "puck":
         return "\n".join([*lines, *([""] if lines else []), _table(item, f"{path}.{item.coupon.name}")])
-    hardness = item.nominals[0]
-    return "\n".join([*lines, _empty(hardness, item.copies)])
+    return "\n".join([*lines, _empty(item.nominals[0], item.copies)])
 
 
 def _table(item: CouponItem, path: str) -> str:

@@ -81,13 +81,12 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     across, along = part.footprint
     middle = (part.place.x + 0.5 * across, part.place.y + 0.5 * along)
     space = min(across, along) * 0.86 * _WIDTH * MM / width * 72  # points
-    size = min(9.0, 0.34 * space)
     ax.text(
         *middle,
         part.label,
         ha="center",
         va="bottom",
-        fontsize=size,
+        fontsize=min(9.0, 0.34 * space),
         color=INK,
         path_effects=halo(),
         gid=part.name,
@@ -227,8 +226,7 @@ def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
     for job in layout.jobs:
         alike: dict[object, list[int]] = {}
         for k, part in enumerate(job.parts):
-            kinds = tuple((shape_of(solid), solid.material.kind) for solid in part.solids)
-            alike.setdefault(kinds, []).append(k)
+            alike.setdefault(tuple((shape_of(solid), solid.material.kind) for solid in part.solids), []).append(k)
         for places in alike.values():
             labels = tuple(job.parts[k].label for k in places)
             judged = check(subject(job.parts[places[0]], layout.printer, job.mode))
