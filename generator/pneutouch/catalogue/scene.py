@@ -140,8 +140,7 @@ def load_scene(
 
 def _resolved(name: str, where: str, design: DesignFile, library: Library) -> ResolvedDesign:
     def find(kind: str, table: str, key: str) -> Any:
-        chosen = getattr(getattr(design, table), key)
-        return library.load(kind, chosen, file=where, key=f"{table}.{key}")
+        return library.load(kind, getattr(getattr(design, table), key), file=where, key=f"{table}.{key}")
 
     printer: Printer = find("printers", "print", "profile")
     scene = ResolvedDesign(
@@ -213,8 +212,7 @@ def _mode(printer: Printer, *materials: Material) -> Mode:
 def check_kind(where: str, key: str, material: Material, kind: MaterialKind) -> None:
     """Raise InputError for a material of another kind."""
     if material.kind != kind:
-        problem = f"{material.label} is {material.kind}"
-        raise InputError(problem, file=where, key=key, remedy=f"it must be {kind}")
+        raise InputError(f"{material.label} is {material.kind}", file=where, key=key, remedy=f"it must be {kind}")
 
 
 def _check_runs(

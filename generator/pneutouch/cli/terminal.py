@@ -194,7 +194,7 @@ def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
     """Bar for a stage, such as "reading runs", or "" if the callback names the stages; yields the callback.
 
     ``unit`` is the unit of the counts at the bar; "" for counts of things."""
-    if not sys.stderr.isatty():
+    if not _moves():
         yield _lines(what)
         return
     from rich.console import Console
@@ -209,6 +209,11 @@ def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
             shown.update(task, description=what if what is None else one_line(what), completed=done, total=total)
 
         yield report
+
+
+def _moves() -> bool:
+    """True if a bar can move on stderr."""
+    return sys.stderr.isatty()
 
 
 def _lines(what: str) -> ProgressCallback:

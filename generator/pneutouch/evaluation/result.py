@@ -64,7 +64,6 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     # Gas volume of connector, tube and gauge as drawn, if 0 is stated behind a tube.
     assembly = evaluation.assembly
     drawn_mL = float(rounded(assembly.drawn_volume / ML, MODEL_DIGITS)) if assembly.dead_volume_note else None
-    anywhere = _anywhere(evaluation) if evaluation.scene.design.contact.anywhere else None
     return replace(
         record,
         states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
@@ -74,7 +73,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         dead_volume_as_drawn_mL=drawn_mL,
         as_drawn=() if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states,
         as_drawn_model=None if evaluation.as_drawn is None else evaluation.as_drawn.model,
-        contact_anywhere=anywhere,
+        contact_anywhere=_anywhere(evaluation) if evaluation.scene.design.contact.anywhere else None,
     )
 
 
@@ -87,12 +86,11 @@ def _anywhere(evaluation: Evaluation) -> ContactAnywhere:
 
 def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """`predicted` with relaxation and speed, and with gauge, mixing curves, calibration and ageing if there are any."""
-    scene = evaluation.scene
     return replace(
         predicted(evaluation, samples),
         viscous=viscous(evaluation.viscous_runs),
         dynamics=dynamics(evaluation.bandwidth),
-        gauge=None if scene.gauge is None else gauge_record(evaluation),
+        gauge=None if evaluation.scene.gauge is None else gauge_record(evaluation),
         mixing_curves=by_mixing_curve(evaluation.curves),
         calibration=_calibrated_by(evaluation),
         aged=_aged(evaluation) if evaluation.options.aged else None,
@@ -260,8 +258,7 @@ def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:
 def _aged(evaluation: Evaluation) -> Aged:
     calibration = evaluation.scene.calibration
     remaining = 1.0 if calibration is None else calibration.remaining_year
-    ratio = ageing_ratio(evaluation.scene.membrane_material) ** remaining
-    return Aged(rounded(ratio, _DIGITS), AGED)
+    return Aged(rounded(ageing_ratio(evaluation.scene.membrane_material) ** remaining, _DIGITS), AGED)
 
 
 def _numbers(values: Array) -> tuple[float, ...]:
