@@ -169,7 +169,8 @@ def _kept(
         else:
             # By hand the travel is not known, and the force stands in its place.
             reach = f"{indent.force:.4g} N" if blocks.position is blocks.force else f"{indent.indentation:.4g} mm"
-            warnings.append(SuspectInterval(*indent.read, f"indentation {k + 1}, {reach}, left out: {why}", False))
+            message = f"indentation {k + 1}, {reach}, left out: {why}"
+            warnings.append(SuspectInterval(*indent.read, message, False))
     return kept, warnings
 
 

@@ -239,7 +239,8 @@ def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:
             break
         at = np.flatnonzero(np.abs(way - levels[k]) <= near)
         first, last = int(at[0]), int(at[-1]) + 1
-        if all(last <= begin or first >= end for begin, end in stays) and last - first <= _SCATTERED * at.size:
+        apart = all(last <= begin or first >= end for begin, end in stays)
+        if apart and last - first <= _SCATTERED * at.size:
             stays.append((first, last))
     return sorted(stays)
 
@@ -253,5 +254,6 @@ def kind_of(blocks: Blocks, parts: list[Excursion]) -> RunKind:
     depths = [float(np.median(blocks.position[slice(*one.hold)])) for one in held]
     if np.ptp(depths) > TURN * np.ptp(blocks.position):
         return "steps"
-    way, stay = np.diff(blocks.time[[(one.clear[1] - 1, one.hold[0], one.hold[1] - 1) for one in held]], axis=1).T
+    times = blocks.time[[(one.clear[1] - 1, one.hold[0], one.hold[1] - 1) for one in held]]
+    way, stay = np.diff(times, axis=1).T
     return "relaxation" if (stay > np.maximum(LONG, way)).all() else "loop"

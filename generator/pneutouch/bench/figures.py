@@ -201,7 +201,8 @@ def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
 
 def _binned(place: Array, values: Array, grid: Array) -> Array:
     """Means of the values near each grid point, interpolated linearly where a bin is empty."""
-    which = np.digitize(place, np.concatenate([[-np.inf], 0.5 * (grid[1:] + grid[:-1]), [np.inf]])) - 1
+    edges = np.concatenate([[-np.inf], 0.5 * (grid[1:] + grid[:-1]), [np.inf]])
+    which = np.digitize(place, edges) - 1
     count = np.bincount(which, minlength=grid.size)
     total = np.bincount(which, weights=values, minlength=grid.size)
     known = count > 0
@@ -341,7 +342,8 @@ def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estima
 def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
     """Stiffness of the only run, with the interval from the standard errors of its first contact, if known, and of a
     force read in coarse steps."""
-    curve = next((curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1])), None)
+    pressed = (curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1]))
+    curve = next(pressed, None)
     if curve is None or not np.isfinite(curve.onset_error):
         return estimate
     shares = curve.onset_error / float(curve.indentation[-1]), curve.step_error / float(np.abs(curve.force).max())

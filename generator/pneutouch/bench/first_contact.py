@@ -91,7 +91,8 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
     """Baseline over the last `BEFORE` seconds at the clear end, at most its later half, so that a reset is over."""
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
-    return baseline(blocks, min(max(late, (start + end) // 2), max(end - 4, start)), max(end, start + 1))
+    begin = max(late, (start + end) // 2)
+    return baseline(blocks, min(begin, max(end - 4, start)), max(end, start + 1))
 
 
 def step_share(blocks: Blocks, bases: list[Baseline]) -> float:

@@ -144,7 +144,8 @@ def _swing(blocks: Blocks) -> str | None:
     means = np.array([part.mean() for part in parts if part.size])
     up = float((means - np.minimum.accumulate(means)).max())
     down = float((np.maximum.accumulate(means) - means).max())
-    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), _NOISY * float(np.median(np.abs(np.diff(means))))):
+    noise = float(np.median(np.abs(np.diff(means))))
+    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), _NOISY * noise):
         return None
     return (
         f"the pressure goes up and down by {number(float(np.ptp(means)) / KPA)} kPa: presses, whose force is not named?"

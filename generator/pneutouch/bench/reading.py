@@ -191,7 +191,8 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
     question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
     if np.ptp(blocks.position) <= _EXACT * float(np.abs(blocks.position).max()):
-        if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * float(np.median(blocks.force_spread)):
+        noise = float(np.median(blocks.force_spread))
+        if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
             raise InputError(
                 f"column {names['position']}: {problem} while the force changes{question}", file=blocks.file
             )

@@ -225,7 +225,8 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
         return None
     base = baseline(blocks, start, end)
     change = abs(base.slope[0]) * float(blocks.time[end - 1] - blocks.time[start])
-    if change <= max(SURELY * math.sqrt(12 * base.between[0] / (end - start)), PRESSED * abs(indent.force)):
+    noise = math.sqrt(12 * base.between[0] / (end - start))
+    if change <= max(SURELY * noise, PRESSED * abs(indent.force)):
         return None
     return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 

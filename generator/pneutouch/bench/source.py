@@ -183,7 +183,8 @@ def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: F
     whose name and unit mean the channel; else the only one whose name or unit does. Raises InputError, with the lines
     of a campaign file that decide, where several columns may be a channel or its unit is not known or none is."""
     stated = columns.model_fields_set
-    layout = layout_of(path, TableFormat(**written.model_dump()), [getattr(columns, key).name for key in channels])
+    known = [getattr(columns, key).name for key in channels]
+    layout = layout_of(path, TableFormat(**written.model_dump()), known)
     meanings = [meaning_of(name, unit) for name, unit in zip(layout.all_names, layout.all_units, strict=True)]
     taken = {_index(layout, getattr(columns, key).name) for key in channels if key in stated}
     matched: dict[str, Column] = {}

@@ -100,7 +100,8 @@ class Commands(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of a name, whose module is imported; None if there is none."""
         if cmd_name in _entries() and cmd_name not in self.commands:
-            infos = import_module(f"pneutouch.cli.{_entries()[cmd_name].module}").app.registered_commands
+            module = import_module(f"pneutouch.cli.{_entries()[cmd_name].module}")
+            infos = module.app.registered_commands
             (info,) = (one for one in infos if (one.name or one.callback.__name__) == cmd_name)
             self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
         command = super().get_command(ctx, cmd_name)

@@ -78,7 +78,8 @@ def comparison_text(comparison: ComparisonRecord) -> str:
     differences = ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
     for pressure_kPa in comparison_words.pressures(comparison):
         rows = [_row(row) for row in comparison.figures if row.driving_pressure_kPa == pressure_kPa]
-        lines += ["", table_text([comparison_words.heading(pressure_kPa), *labels, *differences], rows)]
+        head = [comparison_words.heading(pressure_kPa), *labels, *differences]
+        lines += ["", table_text(head, rows)]
     lines += ["", *comparison_words.summary(comparison), ""]
     return "\n".join([*lines, comparison.criterion, *comparison.notes])
 

@@ -65,7 +65,8 @@ def new_design(
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:
     """Write a design, every key with its value, as ``folder/name.toml``; a file is replaced only with ``overwrite``.
     Raises InputError."""
-    text = design_template(name, source.changed({}).model_dump(by_alias=True), "Every key may be left out.")
+    values = source.changed({}).model_dump(by_alias=True)
+    text = design_template(name, values, "Every key may be left out.")
     return write_design(name, folder, text, overwrite=overwrite)
 
 
@@ -296,7 +297,8 @@ def _pressures_kPa(material: Material, design: DesignFile) -> list[float] | None
     membrane, usual_kPa = design.membrane, design.pneumatics.driving_pressures_kPa
     sensor = material_sensor(material)
     size = membrane.inner_radius_mm, membrane.wall_thickness_mm
-    highest_kPa = _SHARE * float(pressure(np.array(LIMIT_HEIGHT), *size, sensor.wall.shear_modulus)) / KPA
+    limit = float(pressure(np.array(LIMIT_HEIGHT), *size, sensor.wall.shear_modulus))
+    highest_kPa = _SHARE * limit / KPA
     if highest_kPa >= usual_kPa[-1]:
         return None
     return [0.0, *(float(f"{share * highest_kPa:.2g}") for share in (0.25, 0.5, 1.0))]

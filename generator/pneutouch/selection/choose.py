@@ -198,7 +198,8 @@ def _least_moved(
 
 def places(problem: SelectionProblem, pool: CandidatePool) -> Array:
     """Relative standard uncertainty (n,) of the sensitivity by an unknown place of contact; NaN if not known."""
-    return place_uncertainties(problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure), pool.response)
+    batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    return place_uncertainties(batch, pool.response)
 
 
 def differ(pool: CandidatePool, a: int, b: int) -> bool:

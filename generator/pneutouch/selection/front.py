@@ -130,7 +130,8 @@ def _pools(problem: SelectionProblem, places: list[Array]) -> list[CandidatePool
     low, high = _bounds(problem, ratio)
     radius = low * (high / low) ** across
     resin = np.repeat(np.arange(len(places), dtype=float), counts)
-    pool = evaluated(problem, resin, radius, ratio * radius, np.full_like(ratio, problem.driving_pressure or 0.0))
+    pressure = np.full_like(ratio, problem.driving_pressure or 0.0)
+    pool = evaluated(problem, resin, radius, ratio * radius, pressure)
     ends = np.cumsum(counts)
     return [pool.take(np.arange(end - count, end)) for end, count in zip(ends, counts, strict=True)]
 
@@ -173,7 +174,8 @@ def _unbeaten(points: Array) -> Index:
     """Indices of the points (2, n) that no other exceeds in both coordinates, in falling order of the first."""
     first, second = points
     rows = np.argsort(-first, kind="stable")
-    return np.asarray(rows[second[rows] > np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]])
+    before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]
+    return np.asarray(rows[second[rows] > before])
 
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:

@@ -51,7 +51,8 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
     if not states:
         raise InputError("no design of this page can be read", remedy="mend the design files that pneutouch list names")
     # By the same limits as what comes from a browser.
-    question = Question.of(plain(min(states, key=lambda state: (state.base != source.name, len(state.values)))))
+    nearest = min(states, key=lambda state: (state.base != source.name, len(state.values)))
+    question = Question.of(plain(nearest))
     if question.source(bases, library).changed({}).model_dump() != design.model_dump():
         remedy = "build it by its file with the commands"
         raise InputError("has values that the page cannot hold", file=source.where, remedy=remedy)
@@ -90,7 +91,8 @@ def open_file(arguments: Mapping[str, Any], folder: Path, report: Report) -> Ope
 
 
 def _opened(path: Path, bases: Bases, library: Library) -> OpenedDesign:
-    reader = {".3mf": _from_3mf, ".toml": _from_toml, ".json": _from_export}.get(path.suffix.lower())
+    readers = {".3mf": _from_3mf, ".toml": _from_toml, ".json": _from_export}
+    reader = readers.get(path.suffix.lower())
     if reader is None:
         raise InputError("the page opens no file of this kind", file=path, remedy=f"give {_ENDINGS}")
     return reader(path, bases, library)

@@ -371,4 +371,5 @@ def _check_open(name: str, path: Path, bases: Mapping[str, str], library: Librar
     if name not in bases or not Path(bases[name]).is_file():
         return
     if Path(bases[name]).resolve() != path.resolve():
-        raise InputError(f"{bases[name]} is open by this name", key="name", value=name, remedy="give another name")
+        problem = f"{bases[name]} is open by this name"
+        raise InputError(problem, key="name", value=name, remedy="give another name")

@@ -196,7 +196,8 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
             loaded = load_curves(given.data / file, scene, reading=given.reading)
             sources[file] = loaded.sources[Path(file).name]
             (shown,) = loaded.campaign.runs
-            run = run.model_copy(update={"driving_pressure_kPa": shown.driving_pressure_kPa, "kind": shown.kind})
+            read_kPa = shown.driving_pressure_kPa
+            run = run.model_copy(update={"driving_pressure_kPa": read_kPa, "kind": shown.kind})
         except PneutouchError as error:
             problem = str(error).removeprefix(f"{given.data / file}: none of its files can be read\n")
         seen[run.driving_pressure_kPa] += 1
@@ -301,7 +302,8 @@ def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str])
         return replace(given.question, values={**given.question.values, **named})
     if outcome.design_given not in bases:
         return None
-    return Question(outcome.design_given, {**dict(text.split("=", 1) for text in outcome.assignments), **named})
+    values = dict(text.split("=", 1) for text in outcome.assignments)
+    return Question(outcome.design_given, {**values, **named})
 
 
 @contextlib.contextmanager

@@ -86,7 +86,8 @@ def _floats(path: Path, name: str, column: Any, row: int) -> Array:
     try:
         return np.asarray(column.cast(pa.float64()).to_numpy(zero_copy_only=False))
     except pa.ArrowInvalid:
-        at = int(np.argmax(np.abs(column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)) > _EXACT))
+        rounded = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+        at = int(np.argmax(np.abs(rounded) > _EXACT))
         raise InputError(
             f"{column[at].as_py()} is beyond 2^53, up to which whole numbers are exact",
             file=path,

@@ -188,7 +188,8 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
     if skip is None and all(comment(line) or not line.strip() for line in rows[:before]):
         before = 0
     written = replace(given, delimiter=delimiter, decimal=decimal, skip_rows=before if skip is None else skip)
-    return TableLayout(tuple(names), tuple(units), written, (), at, begin + located.first + 1, least, stamps=stamps)
+    first = begin + located.first + 1
+    return TableLayout(tuple(names), tuple(units), written, (), at, first, least, stamps=stamps)
 
 
 def _cells(line: str, delimiter: str) -> list[str]:

@@ -259,7 +259,8 @@ def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:
     ]
     plates: list[list[TrayItem]] = []
     while left:
-        places = in_rows([(float(body.bounds[1][0]), float(body.bounds[1][1])) for _, body in left], area)
+        sizes = [(float(body.bounds[1][0]), float(body.bounds[1][1])) for _, body in left]
+        places = in_rows(sizes, area)
         # What the rules let pass fits alone, if need be turned: it then begins a plate of its own.
         if places[0] is None:
             plates.append([_item(*left[0], 0.0, 0.0)])

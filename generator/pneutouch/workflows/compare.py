@@ -152,7 +152,8 @@ def of_build(folder: Path) -> PredictedColumn:
     stated = {"input-hash": str(manifest.get("input_hash", ""))}
     recipe = read_recipe(Package(folder, (), stated, recipe_text, thumbnail=False, warnings=()))
     notes = () if made_by == __version__ else (f"{folder} was built by pneutouch {made_by} (here {__version__}).",)
-    return PredictedColumn(document, recipe.scene, model, recipe.options.clamp, "build", str(folder), notes=notes)
+    clamp = recipe.options.clamp
+    return PredictedColumn(document, recipe.scene, model, clamp, "build", str(folder), notes=notes)
 
 
 def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths) -> tuple[ComparedState, str]:
@@ -303,7 +304,8 @@ def _columns(
     """Columns of one argument; a folder of results that stands ``alone`` gives its predictions too."""
     if isinstance(one, str) and one not in library.paths("designs") and Path(one).is_dir():
         return _of_folder(Path(one), changes, library, options, alone=alone)
-    return [of_design(evaluate(one, changes, library=library, **options), one if isinstance(one, str) else "")]
+    source = one if isinstance(one, str) else ""
+    return [of_design(evaluate(one, changes, library=library, **options), source)]
 
 
 def _of_folder(

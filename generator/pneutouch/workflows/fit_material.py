@@ -104,7 +104,8 @@ def _profile(fitted: FittedMaterial) -> str | None:
     """Name of a profile that makes the material, for a cast one rather one that casts; None if none runs it."""
     material = _material(fitted)
     made = makers(material, Library.default())
-    return next(iter([*[name for name, one in made.items() if one.is_casting == material.is_cast], *made]), None)
+    cast = [name for name, one in made.items() if one.is_casting == material.is_cast]
+    return next(iter([*cast, *made]), None)
 
 
 def _material(fitted: FittedMaterial) -> Material:
@@ -140,7 +141,8 @@ def _chart(fitted: FittedMaterial) -> str:
             np.concatenate(parts) for parts in zip(*(difference(law, c) for c in fitted.choice.curves), strict=True)
         )
         curves.append(LawCurve(law.form.label, stretch, law.stress(stretch), off_at, off))
-    return law_chart([(curve.stretch, curve.stress) for curve in fitted.choice.curves], curves, fitted.largest)
+    points = [(curve.stretch, curve.stress) for curve in fitted.choice.curves]
+    return law_chart(points, curves, fitted.largest)
 
 
 def fit_material(data: Sequence[Path], options: FitOptions, library: Library | None = None) -> FittedMaterial:
@@ -165,7 +167,8 @@ def fit_material(data: Sequence[Path], options: FitOptions, library: Library | N
         neo, largest = law, puck.largest
     else:
         lengths = SpecimenSize(options.gauge_length_mm, options.width_mm, options.thickness_mm)
-        choice = choose_law([read_tension(file, lengths) for file in data], options.stretch_to, options.slack)
+        curves = [read_tension(file, lengths) for file in data]
+        choice = choose_law(curves, options.stretch_to, options.slack)
         law, neo, largest = choice.law, choice.neo_hookean, choice.largest
     fitted = FittedMaterial(tuple(data), options, law, neo, largest, choice, puck, path, "")
     return replace(fitted, text=material_file(fitted, library))
@@ -244,7 +247,8 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
         measured["shore_a"] = Quantity(value=_four(float(readings.mean())), spread=spread, source=source)
     content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
     KINDS["materials"].validate(content, str(fitted.path))
-    return whole_head(_COMMAND, ", ".join(file_name(path.name) for path in fitted.data)) + toml_text(content)
+    names = ", ".join(file_name(path.name) for path in fitted.data)
+    return whole_head(_COMMAND, names) + toml_text(content)
 
 
 def _four(value: float) -> float:

@@ -121,7 +121,8 @@ def _csv(columns: dict[str, Array]) -> bytes:
     text = io.StringIO()
     text.write(",".join(columns) + "\n")
     # Zeros that are rounding have one form.
-    np.savetxt(text, np.round(np.stack(list(columns.values()), axis=1), 9) + 0.0, fmt="%.9g", delimiter=",")
+    table = np.round(np.stack(list(columns.values()), axis=1), 9) + 0.0
+    np.savetxt(text, table, fmt="%.9g", delimiter=",")
     return text.getvalue().encode()
 
 
@@ -145,4 +146,5 @@ def _gain(signal: StateSignal, run: RespondRun) -> GainCurve:
     frequency = np.geomspace(_LOWEST, highest_frequency(signal.dynamics), 400)
     sources = list(dict.fromkeys(one.source for one in run.signals))
     data = "" if signal.source is None else f", data {chr(ord('A') + sources.index(signal.source))}"
-    return GainCurve(f"{signal.driving_pressure / KPA:g} kPa{data}", frequency, gain_at(signal.dynamics, frequency))
+    label = f"{signal.driving_pressure / KPA:g} kPa{data}"
+    return GainCurve(label, frequency, gain_at(signal.dynamics, frequency))

@@ -74,12 +74,14 @@ class CalibrationFit:
     @property
     def left_out(self) -> Flags:
         """Flags of the curve points that the model does not reach, (c, m); see also `injections_left_out`."""
-        return self.points.there & ~self.solution.use[: self.points.there.size].reshape(self.points.there.shape)
+        size = self.points.there.size
+        return self.points.there & ~self.solution.use[:size].reshape(self.points.there.shape)
 
     @property
     def injections_left_out(self) -> Flags:
         """Flags of the injected volumes that the model does not reach, (i, n)."""
-        return self.points.known & ~self.solution.use[2 * self.points.there.size :].reshape(self.points.known.shape)
+        size = self.points.there.size
+        return self.points.known & ~self.solution.use[2 * size :].reshape(self.points.known.shape)
 
 
 def fit(
@@ -170,7 +172,8 @@ def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Arr
         step = np.where(full + step <= problem.chosen.high, step, -step)
         values, ok = problem.model.values(np.vstack([full, full + np.diag(step)[others]]))
         use = solution.use & ok.all(axis=0)
-        slopes[:, others] = np.where(use, (values[1:] - values[0]) / step[others, None] / problem.errors, 0.0).T
+        change = (values[1:] - values[0]) / step[others, None] / problem.errors
+        slopes[:, others] = np.where(use, change, 0.0).T
     return slopes
 
 

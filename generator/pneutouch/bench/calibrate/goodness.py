@@ -268,7 +268,8 @@ def scatter_errors(groups: list[Array]) -> tuple[Array, float]:
     scatter = variance / counts[:, None]
     # A sensitivity divides one reading by the other, so the least shares of both are in it.
     whole = scatter + np.array([FLOOR[0] ** 2, FLOOR[0] ** 2 + FLOOR[1] ** 2])
-    return np.sqrt(whole), min(spare / max(float((scatter / whole).max()) ** 2, 1e-30), _MOST_FREEDOM)
+    share = float((scatter / whole).max())
+    return np.sqrt(whole), min(spare / max(share**2, 1e-30), _MOST_FREEDOM)
 
 
 def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array], use: Flags) -> tuple[float, float]:

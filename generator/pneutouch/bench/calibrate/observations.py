@@ -151,8 +151,10 @@ def points_of(observations: Observations) -> ObservationPoints:
         raise InputError(
             "calibrate: no curves and no injections; there must be at least one run of kind steps or injection"
         )
-    *curve_columns, there = _padded([_curve(curve, observations.rig) for curve in observations.curves], 5)
-    *injected, known = _padded([_injection(injection) for injection in observations.injections], 3)
+    curves = [_curve(curve, observations.rig) for curve in observations.curves]
+    *curve_columns, there = _padded(curves, 5)
+    injections = [_injection(injection) for injection in observations.injections]
+    *injected, known = _padded(injections, 3)
     # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
     driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
     pressures_kPa = observations.driving_pressures_kPa
@@ -230,4 +232,5 @@ def _padded(rows: list[tuple[Array, ...]], columns: int) -> list[Array]:
         np.array([np.pad(row[k], (0, longest - row[k].size), mode="edge") for row in rows]).reshape(len(rows), longest)
         for k in range(columns)
     ]
-    return [*arrays, np.array([np.arange(longest) < row[0].size for row in rows]).reshape(len(rows), longest)]
+    there = np.array([np.arange(longest) < row[0].size for row in rows]).reshape(len(rows), longest)
+    return [*arrays, there]

@@ -75,7 +75,8 @@ class LeastSquaresProblem:
         """True if a run has lost more than `_MOST_LOST` of its values in ``use``: those not in ``known``."""
         clusters = self.model.points.clusters
         before = np.bincount(clusters[use])
-        return bool((np.bincount(clusters[use & known], minlength=before.size) < (1 - _MOST_LOST) * before).any())
+        after = np.bincount(clusters[use & known], minlength=before.size)
+        return bool((after < (1 - _MOST_LOST) * before).any())
 
     def whitened(self, rows: Array, use: Flags) -> Array:
         """Columns (n + q, j) whose scalar products are those of the columns of ``rows`` (N, j), weighted by the inverse

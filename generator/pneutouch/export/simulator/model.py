@@ -305,7 +305,8 @@ def mjcf(sensor: SimulatedSensor) -> bytes:
     add(outputs, "jointpos", name=f"{name}_indentation_m", joint=f"{name}_indentation")
     for what in ("force_N", "pressure_kPa", "status"):
         add(outputs, "user", name=f"{name}_{what}", dim=1, needstage="pos")
-    add(add(root, "custom"), "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
+    numbers = add(root, "custom")
+    add(numbers, "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
     return xml_document(root)
 
 
@@ -315,7 +316,8 @@ def _dome(base: ElementTree.Element, sensor: SimulatedSensor, table: PressTable)
     moving = sensor.moving
     at = (0.0, 0.0, float(moving.centre[2]) - centre)
     add(dome, "inertial", pos=vector(at), mass=moving.mass, diaginertia=vector(moving.about_centre.diagonal()))
-    add(dome, "joint", name=f"{name}_indentation", type="slide", axis="0 0 -1", armature=sensor.armature)
+    joint = f"{name}_indentation"
+    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature)
     add(dome, "geom", name=f"{name}_dome", type="sphere", size=sensor.radius, rgba="0.3 0.5 0.7 0.5", **_CONTACT)
     add(dome, "site", name=f"{name}_contact", pos=vector((0.0, 0.0, sensor.radius)), size="0.0005")
 

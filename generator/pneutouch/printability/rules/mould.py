@@ -101,7 +101,8 @@ def mould_filling(mould: MouldAssembly) -> MouldFilling | None:
     material = mould.scene.membrane_material
     if material.casting is None or material.casting.mixed_viscosity_Pa_s is None:
         return None
-    return filling(mould.size, material.casting.mixed_viscosity_Pa_s.most, material.density_g_per_cm3.nominal)
+    viscosity = material.casting.mixed_viscosity_Pa_s.most
+    return filling(mould.size, viscosity, material.density_g_per_cm3.nominal)
 
 
 def check_mould_filling(mould: MouldAssembly) -> list[Finding]:

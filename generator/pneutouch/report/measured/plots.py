@@ -124,7 +124,8 @@ def sensitivities(groups: Groups) -> Plot | None:
 
     def draw(group: ResinGroups) -> Panel:
         lines = [*_predicted_sensitivity(group, 0.5 * slack), *_measured_sensitivity(group, ages, 0.18 * slack)]
-        return replace(curves.sensitivities(lines), xlim=across, ylim=up, ticks=pressures_kPa if few else ())
+        panel = curves.sensitivities(lines)
+        return replace(panel, xlim=across, ylim=up, ticks=pressures_kPa if few else ())
 
     means = [
         b.group.figures[SENSITIVITY_KEY] for g in groups for b in g.comparisons if SENSITIVITY_KEY in b.group.figures
@@ -169,7 +170,8 @@ def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) ->
         place_kPa = comparison.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
         if estimate.low is not None and estimate.high is not None:
             # Caps on an interval without width would hide the marker.
-            look = PlotLine(width=0.9, marker="_" if estimate.high > estimate.low else "", size=4, over=4)
+            caps = "_" if estimate.high > estimate.low else ""
+            look = PlotLine(width=0.9, marker=caps, size=4, over=4)
             lines += bars_between((place_kPa,), (estimate.low,), (estimate.high,), look)
         lines.append(replace(_mean(k), x=(place_kPa,), y=(estimate.value,)))
     return lines

@@ -111,7 +111,8 @@ def verdict_box(measured: CampaignReport) -> FramedBlocks:
         [v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts
     ]
     table = [SheetTable(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
-    return FramedBlocks(whole_verdict(measured.verdicts), [*table, Text(" ".join(_notes(measured)), "muted")])
+    notes = Text(" ".join(_notes(measured)), "muted")
+    return FramedBlocks(whole_verdict(measured.verdicts), [*table, notes])
 
 
 def _notes(measured: CampaignReport) -> list[str]:

@@ -236,7 +236,8 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
         mean = float(values.mean())
         spread = number(float(values.std(ddof=1)), 2) if values.size > 1 else DASH
         cells += [number(mean, digits), spread]
-    return [str(sum(SENSITIVITY_KEY in figures for figures in each)), *cells] if set(cells) != {DASH} else []
+    count = sum(SENSITIVITY_KEY in figures for figures in each)
+    return [str(count), *cells] if set(cells) != {DASH} else []
 
 
 def ageing_table(measured: CampaignReport) -> SheetTable:
@@ -346,4 +347,5 @@ TERMS = (
 
 def definitions() -> SheetTable:
     """Table of definitions: of every figure, named with its unit, then of the tables' other words."""
-    return SheetTable([*[[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES], *TERMS])
+    named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
+    return SheetTable([*named, *TERMS])

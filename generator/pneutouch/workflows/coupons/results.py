@@ -81,7 +81,8 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
 def check_ours(path: Path, keys: str) -> bool:
     """True if the command wrote the file, False if there is none. Raises InputError for another's file; ``keys`` are to
     go in."""
-    return check_of(path, _COMMAND, f"put {keys} into it by hand, move it away, or give another folder with `out`")
+    remedy = f"put {keys} into it by hand, move it away, or give another folder with `out`"
+    return check_of(path, _COMMAND, remedy)
 
 
 def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:

@@ -115,7 +115,8 @@ def _sizes(scene: ResolvedDesign) -> Iterator[tuple[float, Assembly | None]]:
 
 def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | None:
     """The scene drawn around another dome (mm); None if it cannot be drawn."""
-    membrane = scene.design.membrane.model_copy(update={"inner_radius_mm": radius, "wall_thickness_mm": wall})
+    sizes = {"inner_radius_mm": radius, "wall_thickness_mm": wall}
+    membrane = scene.design.membrane.model_copy(update=sizes)
     try:
         return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane})))
     except PneutouchError:

@@ -72,7 +72,8 @@ def select(
         if (why := _not_covered(part, last, written)) is not None:
             trials.append(part.trial(why))
             continue
-        trials += _judged(part, parts[len(trials) :], last.answer.designs[0].pool.figures.sensitivity * KPA, target)
+        slope = last.answer.designs[0].pool.figures.sensitivity * KPA
+        trials += _judged(part, parts[len(trials) :], slope, target)
         return replace(last, gauges=tuple(trials))
     if last is None:
         raise InputError(
@@ -81,7 +82,8 @@ def select(
             key="target.driving_pressure_kPa",
             remedy="lower it",
         )
-    return replace(last, answer=replace(last.answer, designs=[]), judged={}, confirmed=(), gauges=tuple(trials))
+    none = replace(last.answer, designs=[])
+    return replace(last, answer=none, judged={}, confirmed=(), gauges=tuple(trials))
 
 
 def _parts(target: Target, where: str, library: Library) -> list[_Part]:

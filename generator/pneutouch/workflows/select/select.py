@@ -246,7 +246,8 @@ def _resins(
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
         # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
-        wall = material_sensor(material.model_copy(update={"law": None}) if casting else material).wall
+        plain = material.model_copy(update={"law": None}) if casting else material
+        wall = material_sensor(plain).wall
         if not target.have.holds("materials", name):
             out[name] = "it is not on the shelf"
         elif casting_missing(scene.printer, material):

@@ -358,7 +358,8 @@ def _ratings(evaluations: Sequence[Evaluation]) -> list[Rating]:
 def _of_evaluation(evaluation: Evaluation, intervals: list[Interval], rating: Rating) -> _Values:
     record = by_model(evaluation.prediction, curves=False)
     states = [state_values(*pair) for pair in zip(record.states, intervals, strict=True)]
-    return rounded((states, point_values(replace(record, rating=rating_record(rating, [])))), MODEL_DIGITS, NOTHING)
+    point = point_values(replace(record, rating=rating_record(rating, [])))
+    return rounded((states, point), MODEL_DIGITS, NOTHING)
 
 
 def _failure(error: Exception, count: int, library: Library) -> list[dict[str, Any]]:

@@ -242,7 +242,8 @@ def _partitions(count: int) -> Iterator[list[list[int]]]:
 def _ordered(groups: list[list[int]], loads: Sequence[frozenset[str]]) -> list[list[int]]:
     """Groups in the order with the fewest changes; beyond `_EXACT` by taking the nearest next one."""
     if len(loads) <= _EXACT:
-        best = min(permutations(range(len(loads))), key=lambda order: (changes([loads[k] for k in order]), order))
+        orders = permutations(range(len(loads)))
+        best = min(orders, key=lambda order: (changes([loads[k] for k in order]), order))
         return [groups[k] for k in best]
     order, left = [0], list(range(1, len(loads)))
     while left:

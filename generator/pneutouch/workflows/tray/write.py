@@ -226,7 +226,8 @@ def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
     for job in layout.jobs:
         alike: dict[object, list[int]] = {}
         for k, part in enumerate(job.parts):
-            alike.setdefault(tuple((shape_of(solid), solid.material.kind) for solid in part.solids), []).append(k)
+            kinds = tuple((shape_of(solid), solid.material.kind) for solid in part.solids)
+            alike.setdefault(kinds, []).append(k)
         for places in alike.values():
             labels = tuple(job.parts[k].label for k in places)
             judged = check(subject(job.parts[places[0]], layout.printer, job.mode))
