@@ -105,7 +105,7 @@ def draw(stack: VoxelStack, path: Path) -> None:
     colours[0] = _BACKGROUND
     across = stack.manifest["dpi"][0]
     drawn = encode(np.concatenate([upper, gap, lower]), colours, (across, across))
-    if path.exists() and path.read_bytes() != drawn:
+    if path.is_file() and path.read_bytes() != drawn:
         raise InputError("there is another file of this name", file=path, remedy="give another name, or delete it")
     replace_file(path, drawn)
 

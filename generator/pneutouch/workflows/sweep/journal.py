@@ -36,7 +36,7 @@ MOST_LINE = 2**26
 
 
 class FinishedPoints:
-    """Which points of a sweep are done and where the journal holds them, so that memory does not grow with the figures.
+    """Points of a sweep that are done, and their places in the journal: memory does not grow with their figures.
 
     ``widths``: bytes of the longest text of each variable of texts; ``bases``: bases of the errors; ``counts``: states
     by their status. A dataset states all three before its first point.

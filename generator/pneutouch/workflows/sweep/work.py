@@ -62,7 +62,7 @@ class SweepStudy:
         """Driving pressures that any point has, ascending."""
         # Those of a grid are alike: they are no axis of it.
         points = range(self.plan.count) if self.plan.points else range(1)
-        return sorted({pressure for i in points for pressure in self.point(i).driving_pressures_kPa})
+        return sorted({pressure_kPa for i in points for pressure_kPa in self.point(i).driving_pressures_kPa})
 
     def point(self, index: int) -> SweepPoint:
         """The point with number ``index``."""
