@@ -5,8 +5,6 @@ Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign states 
 file, not by added keys.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple

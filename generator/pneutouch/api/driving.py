@@ -1,7 +1,5 @@
 """Driving pressures as an object: the figure of a task, the pressure that gives it, and the gas needed for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any

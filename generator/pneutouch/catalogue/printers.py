@@ -1,7 +1,5 @@
 """Printer profiles that can make a material, and the error for a named profile that cannot."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``pneutouch predict DESIGN --for FIGURE=VALUE``: the driving pressure that gives a figure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """``pneutouch fit-material``: a tensile or puck test of a laboratory made into a material file."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any
 

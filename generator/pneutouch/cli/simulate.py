@@ -1,7 +1,5 @@
 """``pneutouch simulate``: a campaign of simulated runs, to try the measuring chain on."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Errors of a design's force reading under contact off the centre, from the shipped table."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Predictions of a sensor in a mix of two resins, one for each mixing curve of the pair, to show how they differ."""
 
-from __future__ import annotations
-
 from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.predict import predict

@@ -1,7 +1,5 @@
 """Prediction of a sensor by one of the models, and the assumptions that every prediction states."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType

@@ -4,8 +4,6 @@ The gas is ideal and at one temperature, and the cavity yields: its volume follo
 of the dome. Lengths mm, pressures MPa.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

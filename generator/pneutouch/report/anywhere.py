@@ -1,7 +1,5 @@
 """The datasheet's section on contact that is not central: charts, table and notes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -3,8 +3,6 @@
 Sensors differ by line style and marker, so that they can be told apart in grayscale.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

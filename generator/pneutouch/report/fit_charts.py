@@ -1,7 +1,5 @@
 """Charts as SVG: a fitted law, residuals of a calibration, the response to a load, and a measured run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The datasheet's section on relaxation, hysteresis and ageing, with its two charts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Panels of the greatest force range over sensitivity, and of the sensitivity over the driving pressure."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

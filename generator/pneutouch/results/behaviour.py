@@ -1,7 +1,5 @@
 """Behaviour of a sensor beside its static figures: gauge, relaxation, speed, contact off the centre, ageing."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

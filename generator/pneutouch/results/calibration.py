@@ -1,7 +1,5 @@
 """A calibration: the output of ``calibrate`` and the content of ``calibration.json``."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

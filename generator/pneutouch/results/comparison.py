@@ -1,7 +1,5 @@
 """A comparison of sensors: the content of ``comparison.json``, from which its page and its text are made."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

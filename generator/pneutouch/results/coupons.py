@@ -1,7 +1,5 @@
 """Coupons as they are printed, and what a laboratory measured on them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

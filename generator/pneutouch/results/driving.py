@@ -1,7 +1,5 @@
 """Driving pressures for the tasks of a sensor, as the program states them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

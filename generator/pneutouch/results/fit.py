@@ -1,7 +1,5 @@
 """A material law fitted to a laboratory's own test, as the program states it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """The manifest of an output folder."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The figures of a measured campaign, compared with the predicted ones."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A measurement campaign before it is measured: its runs, their steps and the expected readings."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

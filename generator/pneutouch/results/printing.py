@@ -1,7 +1,5 @@
 """Findings of the print rules and estimates of print jobs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Self, get_args

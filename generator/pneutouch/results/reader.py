@@ -1,7 +1,5 @@
 """A reader of force from the pressure of one sensor, and a sensor's model for a simulator."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

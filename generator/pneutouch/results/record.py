@@ -5,8 +5,6 @@ help. A field without a default is always written; one with a default is left ou
 Standard dataclasses, not pydantic's: records are made by this program alone and need no validation.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from typing import Any, TypeVar

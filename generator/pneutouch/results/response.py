@@ -1,7 +1,5 @@
 """The simulated signal of the gauge under a load, as the program states it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

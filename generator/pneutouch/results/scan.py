@@ -1,7 +1,5 @@
 """A scan of a texture specimen as the program states it, and domes that separate two patterns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Designs for a target: ranked designs, a graded membrane, or the designs of several processes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """True values of a simulated campaign."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Record of a built texture specimen."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Record of a stack of voxel slices."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

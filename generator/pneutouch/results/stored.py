@@ -1,7 +1,5 @@
 """Content of a 3MF or of a voxel stack as the program states it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

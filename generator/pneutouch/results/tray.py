@@ -1,7 +1,5 @@
 """Record of a tray of sensors, as it was laid out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The uncertainty of the figures of one state."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

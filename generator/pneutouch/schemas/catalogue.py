@@ -1,7 +1,5 @@
 """All schemas by name, and those of the TOML files that the program reads, made from the declarations of their keys."""
 
-from __future__ import annotations
-
 from functools import partial, reduce
 from importlib import import_module
 from operator import or_

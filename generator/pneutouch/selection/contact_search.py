@@ -3,8 +3,6 @@
 Space mapping: each round searches the atlas times the factors that the solid gave so far, and solves what it finds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple

@@ -5,8 +5,6 @@ The trade-off under a contact that the atlas does not cover: the atlas's fronts 
 Each round draws the fronts with the factors found so far (`ContactFactors`) and solves a few places of each front.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The form of a dome at rest: two faces over one base plane, and the quantities derived from them."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Designs, builds and measurements side by side, in columns of one kind."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Export of a sensor's pressure-to-force model for a microcontroller and Python, and of its model for a simulator."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path

@@ -4,8 +4,6 @@ The slow reading is that of the predicted curve. Wall, gas and line act on it as
 with the compliance that the wall has there, found from a second press of the same model with more gas behind it.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A simulated signal as the record that ``respond`` prints, and as files with a chart."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The files of a reader from its document, with the sketch that reads its gauge: bytes by file name."""
 
-from __future__ import annotations
-
 import pprint
 import re
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 It is shipped with a table in front; MuJoCo is all that it needs.
 """
 
-from __future__ import annotations
-
 import functools
 import threading
 import weakref

@@ -3,8 +3,6 @@
 Also the input variables of the contact table for given sensors, and the limits of the table.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

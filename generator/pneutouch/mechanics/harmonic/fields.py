@@ -3,8 +3,6 @@
 Also linear maps from nodal coefficients to fields at points of the meridian and angles around the axis.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,8 +4,6 @@ A spring holds each point in the tangent plane of the object; its traction is li
 normal traction. Tractions and slips have two components along `tangents`; n is the number of nodes of an edge.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

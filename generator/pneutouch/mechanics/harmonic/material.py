@@ -5,8 +5,6 @@ principal axes each pair of stretches, with the third across, is such a plane, a
 the stretches, and for the two shears of a pair 2 W_a on the diagonal and -W_j off it. Smooth where stretches coincide.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 

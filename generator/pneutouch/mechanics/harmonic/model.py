@@ -8,8 +8,6 @@ one set of points and solved for others by Woodbury's identity; the inertia of t
 changed tangent is positive definite (Haynsworth 1968, Linear Algebra Appl. 1(1), doi:10.1016/0024-3795(68)90050-5).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

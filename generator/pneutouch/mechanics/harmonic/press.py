@@ -3,8 +3,6 @@
 Also the greatest stretch on the faces of a wall without rotational symmetry.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

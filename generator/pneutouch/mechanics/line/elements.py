@@ -14,8 +14,6 @@ Also properties of dry air over pressure and temperature, in mm, N, MPa and s (m
 I2(x)/I0(x) without `scipy.special`, which takes as long to load as NumPy.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

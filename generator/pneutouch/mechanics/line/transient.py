@@ -7,8 +7,6 @@ faded by Lanczos' sigma factors, so that a sharp step does not ring at the sampl
 Also figures of a gain over frequency: first resonance, bandwidth, and the band within a tolerance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

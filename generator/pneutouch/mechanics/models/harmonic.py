@@ -1,7 +1,5 @@
 """The model ``harmonic``: the solid with Fourier sums around its axis, for objects off the axis and leaning plates."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise

@@ -3,8 +3,6 @@
 The flange is held where the connector holds it. Wall and top both deform, which couples their nodes.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -20,8 +20,6 @@ is settled. The tractions at extrapolated positions do not show which points sli
 again in the next step: in 120 random presses this saves a third of the rounds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

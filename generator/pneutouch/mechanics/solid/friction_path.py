@@ -1,8 +1,6 @@
 """Path following with friction while the plate comes down or goes up: each accepted state stores the places at which
 its points stick, and every step, including a cut or repeated one, starts from these places."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Self
 

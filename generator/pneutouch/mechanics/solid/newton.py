@@ -5,8 +5,6 @@ The line search also serves Newton's method with friction.
 A solve that fails returns a `NewtonFailure`; its callers try again or raise the ComputationErrors defined here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar

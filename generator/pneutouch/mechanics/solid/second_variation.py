@@ -7,8 +7,6 @@ law's second derivatives by the shears that vanish in an axisymmetric deformatio
 contribute on its faces.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loss of stability of the axisymmetric path under the plate: sway (one wave around the axis) and lobes (several)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache

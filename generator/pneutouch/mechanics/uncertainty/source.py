@@ -1,7 +1,5 @@
 """Record of one source of uncertainty: the inputs or figures it acts on, its spread, and the origin of its number."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal

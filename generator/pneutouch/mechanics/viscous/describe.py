@@ -8,8 +8,6 @@ of pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history
 and reverses as it would.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The mould of a cast membrane: its parts, their numbers, its bodies as closed and as printed, and its silicone."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A closed mould measured on its meshes: overlaps, the space that the silicone fills, and undercuts along the draw."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

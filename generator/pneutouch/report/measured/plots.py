@@ -3,8 +3,6 @@
 Markers of runs: shape by specimen, filled at the youngest age, open later; lines of presses: by driving pressure.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The measured datasheet's groups of runs, their predictions, and tables; formulas: docs/howto/measuring.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Figures of a sensor over the driving pressure, pressures that give a required value, and a measured leak."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Driving pressures for the tasks of a sensor, the gas each takes and how long that holds; or changes of the design."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

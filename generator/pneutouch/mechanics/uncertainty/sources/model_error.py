@@ -3,8 +3,6 @@
 Also those of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
