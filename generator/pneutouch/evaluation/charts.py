@@ -3,15 +3,13 @@
 They come from the atlas where it covers the sensor, corrected by the solid under another contact.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
 from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics import Sensor, SensorState, predict
@@ -36,10 +34,6 @@ from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
-
-if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
-
 
 POINTS = 41
 """Number of driving pressures of the curve of the design itself."""

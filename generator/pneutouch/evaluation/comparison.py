@@ -4,12 +4,10 @@ Sources of uncertainty that two sensors share cancel in part in the difference o
 curve can be read at the depths of measured runs, because a figure belongs to the range it is fitted over.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +17,7 @@ from pneutouch.bench.figures import line_figures
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.uncertainty.sources.model_error import MODEL, MODEL_CORRELATION
+from pneutouch.parts import Assembly
 from pneutouch.results.comparison import (
     ColumnRecord,
     ComparedCurve,
@@ -30,10 +29,6 @@ from pneutouch.results.comparison import (
 )
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, extended
 from pneutouch.wording import rounded
-
-if TYPE_CHECKING:
-    from pneutouch.parts import Assembly
-
 
 _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
 """Sources that are one unknown number for all sensors in one resin, of one age."""

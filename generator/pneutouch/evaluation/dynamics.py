@@ -1,25 +1,20 @@
 """Speed of a sensor's reading: its gas line as drawn, and the figures of every state."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
 from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
+from pneutouch.parts import Assembly
 from pneutouch.parts.air_path import AirPiece, air_path
 from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
-
-if TYPE_CHECKING:
-    from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-    from pneutouch.parts import Assembly
 
 GAP = "gap"
 """Name of the piece of an air path that is a volume next to the cavity, not a duct."""

@@ -1,21 +1,15 @@
 """The smallest force that a sensor with its gauge detects, and the limit behind it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
 from pneutouch.mechanics.line.elements import REFERENCE_TEMPERATURE
 from pneutouch.results.behaviour import GaugeFigures, GaugeState
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
-
-if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
 
 _DIGITS = 6
 

@@ -3,24 +3,19 @@
 Error of a reader against the model that it was made from, at states that its grid does not hold.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.calibrated import BEYOND
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.export.reader.reading import CELSIUS, ForceReader, Status
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState, predict
 from pneutouch.units import KPA
-
-if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
-
 
 COLUMNS = 41
 """Number of indentations in a row of the grid, from no contact to the end of the range."""

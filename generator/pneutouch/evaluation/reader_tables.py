@@ -3,16 +3,14 @@
 Standard uncertainty of the force that is read at a pressure rise, over the grid of a reader.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.uncertainty import spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
@@ -29,10 +27,6 @@ from pneutouch.results.reader import (
     ZeroDrift,
 )
 from pneutouch.units import KPA, ML
-
-if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
-
 
 DAYS = 365.0
 """Days of a year of ageing, as in `SensorCalibration.remaining_year`."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -15,10 +16,10 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.body.section import section_outline
 from pneutouch.body.solid import corner_normals
-from pneutouch.catalogue import load_scene
+from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.catalogue.library import elastomers
 from pneutouch.evaluation.charts import curve, resin_curves, tuning
-from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene, sensor_of
+from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene, sensor_of
 from pneutouch.evaluation.result import by_model, rating_record
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import SensorState
@@ -26,15 +27,9 @@ from pneutouch.mechanics.models.choice import USUAL, outside
 from pneutouch.parts import Assembly, assemble
 from pneutouch.results.record import plain
 from pneutouch.shape.meridian import Meridian
+from pneutouch.studio.form import Question
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from pneutouch.catalogue import DesignSource, Library
-    from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.studio.form import Question
 
 _DIGITS = 6
 

@@ -4,11 +4,11 @@ Over several processes the answer is the command's table, and the best design of
 a target like a question about a design: fields with texts.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import CachedLibrary
@@ -16,26 +16,21 @@ from pneutouch.cli.select import typed
 from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
 from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.results.record import extended, plain
+from pneutouch.selection import Candidate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.form import PAGE, Question
+from pneutouch.studio.job import Report
 from pneutouch.wording import rounded
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
+from pneutouch.workflows.select.search import TargetAnswer
 from pneutouch.workflows.select.search import search as answer
 from pneutouch.workflows.select.select import STEPS, SelectionRun
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from pathlib import Path
-
-    from pneutouch.selection import Candidate
-    from pneutouch.studio.job import Report
-    from pneutouch.workflows.select.search import TargetAnswer
 
 
 @dataclass(frozen=True, slots=True)
