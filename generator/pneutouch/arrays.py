@@ -1,5 +1,6 @@
-"""Array types for annotations, distinct values of an array, and cubics through given values and slopes (Hermite)."""
+"""Array types for annotations, distinct values, roots by bisection, and cubics through values and slopes (Hermite)."""
 
+from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
@@ -41,6 +42,20 @@ def distinct(values: NDArray[Scalar]) -> NDArray[Scalar]:
     first = np.ones(ordered.size, dtype=bool)
     first[1:] = ordered[1:] != ordered[:-1]
     return ordered[first]
+
+
+def bisected(function: Callable[[Array], Array], low: Array, high: Array, halvings: int = 60) -> Array:
+    """Argument at which ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
+
+    The result is ``low`` where the function is positive there already, and ``high`` where it is still negative there.
+    All arrays have the same shape. 2**-60 of the bracket is below the rounding error of a root of that size.
+    """
+    a, b = np.array(low, float), np.array(high, float)
+    for _ in range(halvings):
+        middle = 0.5 * (a + b)
+        below = function(middle) < 0
+        a, b = np.where(below, middle, a), np.where(below, b, middle)
+    return np.asarray(0.5 * (a + b))
 
 
 def hermite(at: Array, x: Array, y: Array, slope: Array) -> Array:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, hermite
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.shape.dome import DomeShape
@@ -39,17 +39,7 @@ class ArcProfile:
         if len(self.knots) == 1:
             return np.full(np.shape(arc), self.values[0])
         x, y = np.array(self.knots), np.array(self.values)
-        slope = _slopes(x, y)
-        at = np.clip(arc, x[0], x[-1])
-        k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, x.size - 2)
-        step = x[k + 1] - x[k]
-        t = (at - x[k]) / step
-        return np.asarray(
-            (1 + 2 * t) * (1 - t) ** 2 * y[k]
-            + t * (1 - t) ** 2 * step * slope[k]
-            + t**2 * (3 - 2 * t) * y[k + 1]
-            - t**2 * (1 - t) * step * slope[k + 1]
-        )
+        return hermite(np.clip(arc, x[0], x[-1]), x, y, _slopes(x, y))
 
 
 def _slopes(x: Array, y: Array) -> Array:

@@ -30,29 +30,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, bisected
 from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.prediction import LimitPoint, Limits
 from pneutouch.mechanics.sensor import Sensor
-
-_HALVINGS = 60
-"""Bisection steps: 2**-60 of the bracket is below the rounding error of a root of that size."""
-
-
-def _bisect(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Argument at which ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
-
-    The result is ``low`` where the function is positive there already, and ``high`` where it is still negative there.
-    All arrays have the same shape.
-    """
-    a, b = np.array(low, float), np.array(high, float)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (a + b)
-        below = function(middle) < 0
-        a, b = np.where(below, middle, a), np.where(below, b, middle)
-    root: Array = 0.5 * (a + b)
-    return root
-
 
 _HIGHEST = 1e6
 """Largest x searched on the falling branch; p R0/(mu t0) is 4e-6 there."""
@@ -82,7 +63,7 @@ def _limit_height() -> float:
         return 8 * (1 - 7 * square) - (1 - square) * (1 + square) ** 3
 
     # The slope is negative below the limit point and positive above it on this bracket.
-    return float(_bisect(slope, np.array(1.2), np.array(3.0)))
+    return float(bisected(slope, np.array(1.2), np.array(3.0)))
 
 
 LIMIT_HEIGHT = _limit_height()
@@ -116,9 +97,9 @@ def relative_height(
         raise ComputationError("the membrane theory does not cover suction; give driving pressures from 0")
     if falling:
         low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
-        return np.exp(_bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))
+        return np.exp(bisected(lambda s: target - relative_pressure(np.exp(s)), low, high))
     low, high = np.ones(target.shape), np.full(target.shape, LIMIT_HEIGHT)
-    return _bisect(lambda x: relative_pressure(x) - target, low, high)
+    return bisected(lambda x: relative_pressure(x) - target, low, high)
 
 
 def limit_point(sensor: Sensor) -> LimitPoint:
@@ -252,7 +233,7 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
     height = apex - indentation
     model = _BY_NAME[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
-    rho = _bisect(model.residual, zero, zero + sensor.dome.inner_radius)
+    rho = bisected(model.residual, zero, zero + sensor.dome.inner_radius)
     cap = pressed_cap(rho, height, sensor.dome.inner_radius)
     reference = 2 * np.pi * sensor.dome.inner_radius**2
     return PressedStates(rho, cap.volume, gas.pressure(cap.volume), model.force(rho), reference / cap.area)

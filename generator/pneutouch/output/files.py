@@ -189,8 +189,8 @@ def check_writable(folder: Path, key: str = "out") -> None:
         raise InputError(f"{parent} cannot be written", key=key, remedy="give a folder you may write to")
 
 
-def write_folder(folder: Path, files: dict[str, bytes]) -> None:
-    """Replace ``folder`` by ``files`` (path inside it to content); files of others in it are kept.
+def write_folder(folder: Path, files: dict[str, bytes]) -> Path:
+    """Replace ``folder`` by ``files`` (path inside it to content) and return it; files of others in it are kept.
 
     Raises InputError as `replacing`. Everything is written to a hidden folder next to it first. A run that stops before
     the last renames leaves the previous output as it was.
@@ -200,6 +200,7 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
             path = fresh / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content)
+    return folder
 
 
 @contextlib.contextmanager

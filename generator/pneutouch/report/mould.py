@@ -15,14 +15,13 @@ from pneutouch.parts.mould.filling import release_of
 from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, lay_out_mould, mould_solids, screw_places, silicone
 from pneutouch.parts.mould.size import PROUD, SCREW, MouldSize
 from pneutouch.report.blocks import Plot, SheetBlock, SheetTable, section
-from pneutouch.report.section import CENTRE, THIN, leader
+from pneutouch.report.section import CENTRE, GRAY, THIN, draw_loops, leader
 from pneutouch.report.style import INK, MM, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TOLERANCE = 5e-3
-_THICK = 0.9
 _WIDE = 150.0
 """Width of the drawing in mm; it is as high as the section needs."""
 
@@ -32,9 +31,8 @@ _HATCHES = {
     "mould-core": "\\\\\\\\",
     "mould-base": "||||",
     RING: "xxxxxx",
+    "silicone": "",
 }
-_SILICONE = "0.78"
-"""Gray of the silicone, which is not hatched as the parts are."""
 
 
 def mould_section(mould: MouldAssembly) -> str:
@@ -108,24 +106,15 @@ def _fastening(mould: MouldAssembly) -> str:
 
 def _fill(ax: Axes, solid: Solid) -> None:
     """Draw the section of a part turned over, at heights -z: silicone in gray, printed parts and ring hatched."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
     loops = [loop * np.array([1.0, -1.0]) for loop in section_outline(solid, _TOLERANCE)]
-    shape = Path.make_compound_path(*(Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops))
-    hatch = _HATCHES.get(solid.name)
-    if hatch is None:
-        ax.add_patch(PathPatch(shape, facecolor=_SILICONE, edgecolor="none"))
-    else:
-        ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
-    ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
+    draw_loops(ax, loops, solid.name, _HATCHES)
 
 
 def _holes(ax: Axes, ring: RingSize) -> None:
     """Draw the holes of the ring, turned into the plane of the section and full of silicone."""
     z = -np.array([ring.web_low, ring.web_low, ring.web_high, ring.web_high])
     for x in (-ring.hole_circle, ring.hole_circle):
-        ax.fill(x + ring.hole_radius * np.array([-1.0, 1.0, 1.0, -1.0]), z, facecolor=_SILICONE, edgecolor=INK, lw=THIN)
+        ax.fill(x + ring.hole_radius * np.array([-1.0, 1.0, 1.0, -1.0]), z, facecolor=GRAY, edgecolor=INK, lw=THIN)
 
 
 def _labels(ax: Axes, size: MouldSize) -> None:

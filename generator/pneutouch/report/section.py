@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -103,6 +103,9 @@ _WEDGES = 60
 _BEYOND = 0.1
 """Share of the wall by which wedges reach beyond both faces."""
 _HATCHES = {"membrane": "////////", "connector": "\\\\\\\\", "ring": "----", "plug": "||||"}
+"""Hatches by role; another role has crosses."""
+GRAY = "0.78"
+"""Gray of silicone in its mould, which is not hatched as the parts are."""
 
 
 def draw_section(ax: Axes, assembly: Assembly) -> None:
@@ -127,13 +130,13 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
             _turned_in(ax, bore, both_sides=filled or assembly.layout.port_axis is None, filled=filled)
 
 
-def draw_loops(ax: Axes, loops: Sequence[Array], role: str) -> None:
-    """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch that bodies of this ``role`` have."""
+def draw_loops(ax: Axes, loops: Sequence[Array], role: str, hatches: Mapping[str, str] = _HATCHES) -> None:
+    """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch that bodies of this ``role`` have; gray
+    if that is empty."""
     from matplotlib.patches import PathPatch
 
-    shape = loops_path(loops)
-    hatch = _HATCHES.get(role, "xx")
-    ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
+    shape, hatch = loops_path(loops), hatches.get(role, "xx")
+    ax.add_patch(PathPatch(shape, facecolor="white" if hatch else GRAY, edgecolor=MUTED, hatch=hatch, lw=0))
     ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
 
 

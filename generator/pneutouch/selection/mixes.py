@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array, Index, bisected
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.selection.candidates import CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
@@ -91,11 +91,5 @@ def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixin
             return np.asarray(np.log(pool_there.response.lines.sensitivity / target_kPa_per_N))
 
     a, b = off(low), off(high)
-    bracketed = a * b <= 0.0
-    for _ in range(_POLISH):
-        middle = 0.5 * (low + high)
-        here = off(middle)
-        same = here * a > 0.0
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-        a = np.where(same, here, a)
-    return np.where(bracketed, 0.5 * (low + high), at)
+    root = bisected(lambda fraction: -np.sign(a) * off(fraction), low, high, _POLISH)
+    return np.where(a * b <= 0.0, root, at)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 
@@ -281,6 +282,11 @@ def fault_status(error: PneutouchError) -> int:
     return BAD_INPUT if isinstance(error, InputError) else FAILED
 
 
+def fault_response(error: PneutouchError, status: int | None = None) -> Response:
+    """Response with the problems of an error; ``status`` None: that of `fault_status`."""
+    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
+
+
 def reported(compute: Callable[[], object]) -> PageResponse:
     """The response of a computation; an error is an answer too, without a traceback."""
     try:
@@ -290,8 +296,13 @@ def reported(compute: Callable[[], object]) -> PageResponse:
     except MemoryError:
         fault = too_little_memory()
     except Exception as error:
-        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+        fault = internal_fault(error)
     return PageResponse(fault_status(fault), faults_of(fault))
+
+
+def internal_fault(error: Exception) -> PneutouchError:
+    """Error for a fault of the program, without a traceback."""
+    return ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
 
 
 def too_little_memory() -> PneutouchError:

@@ -23,7 +23,7 @@ from starlette.routing import Route
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.results.record import plain
 from pneutouch.studio.form import NameTakenError, json_body, save_design
-from pneutouch.studio.guard import FILES, SHEET, UPLOADS, Uploads, fault_status, faults_of
+from pneutouch.studio.guard import FILES, SHEET, UPLOADS, Uploads, fault_response
 from pneutouch.studio.job import BRIEF, KINDS
 
 KEPT = 8
@@ -258,7 +258,7 @@ class Desk:
         try:
             number = await self.uploads.add(request.query_params.get("name", ""), request.stream())
         except PneutouchError as error:
-            return _fault(error)
+            return fault_response(error)
         return JSONResponse({"upload": number, "name": self.uploads[number].name})
 
     async def save(self, request: Request) -> Response:
@@ -268,9 +268,9 @@ class Desk:
             async with self._saving:
                 document = await run_in_threadpool(save_design, content, self._bases)
         except NameTakenError as error:
-            return _fault(error, _CLASH)
+            return fault_response(error, _CLASH)
         except PneutouchError as error:
-            return _fault(error)
+            return fault_response(error)
         return JSONResponse(document)
 
     async def known(self, request: Request) -> Response:
@@ -287,9 +287,9 @@ class Desk:
             files = [self._uploaded(number) for number in arguments.pop("uploads", [])]
             job = await self.jobs.start(kind, arguments | {"files": files, "bases": self._bases})
         except InputError as error:
-            return _fault(error)
+            return fault_response(error)
         except PneutouchError as error:
-            return _fault(error, _BUSY)
+            return fault_response(error, _BUSY)
         return JSONResponse(plain(job.record), 202)
 
     def _uploaded(self, number: Any) -> dict[str, str]:
@@ -363,9 +363,5 @@ async def _object(request: Request) -> dict[str, Any]:
     return content
 
 
-def _fault(error: PneutouchError, status: int | None = None) -> Response:
-    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
-
-
 def _unknown() -> Response:
-    return _fault(InputError("no such job or file, or no longer", remedy="start it again"), 404)
+    return fault_response(InputError("no such job or file, or no longer", remedy="start it again"), 404)

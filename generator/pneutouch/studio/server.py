@@ -30,8 +30,8 @@ from pneutouch.studio.guard import (
     Application,
     Guard,
     TooLargeError,
-    fault_status,
-    faults_of,
+    fault_response,
+    internal_fault,
     too_large,
     too_little_memory,
 )
@@ -109,7 +109,7 @@ class Studio:
     async def at_once(self, answer: Callable[[Question], object], request: Request) -> Response:
         """Response with what ``answer`` returns, computed in this process, one question at a time."""
         if self._waiting >= _WAITING:
-            return _fault(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
+            return fault_response(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
         self._waiting += 1
         try:
             question = await _question(request)
@@ -117,9 +117,9 @@ class Studio:
                 content = await run_in_threadpool(answer, question)
             return JSONResponse(plain(content))
         except PneutouchError as error:
-            return _fault(error)
+            return fault_response(error)
         except MemoryError:
-            return _fault(too_little_memory())
+            return fault_response(too_little_memory())
         finally:
             self._waiting -= 1
 
@@ -129,7 +129,7 @@ class Studio:
             question = await _question(request)
             answer = await self._solver.request(plain(question))
         except PneutouchError as error:
-            return _fault(error)
+            return fault_response(error)
         except SupersededError:
             return JSONResponse({"superseded": True}, 409)
         return JSONResponse(answer["content"], answer["status"])
@@ -175,18 +175,13 @@ async def _question(request: Request) -> Question:
     return Question.of(await json_body(request, "question"))
 
 
-def _fault(error: PneutouchError, status: int | None = None) -> Response:
-    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
-
-
 async def _refused(request: Request, error: Exception) -> Response:
     return too_large(request.url.path)
 
 
 async def _failed(request: Request, error: Exception) -> Response:
     """Response to an internal fault, without a traceback."""
-    fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
-    return _fault(fault)
+    return fault_response(internal_fault(error))
 
 
 HOST = "127.0.0.1"

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, hermite
+from pneutouch.arrays import Array, bisected, hermite
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.table import shipped
@@ -25,7 +25,6 @@ from pneutouch.units import GAUGE_LIMIT, KPA
 _COLUMNS = 61
 """Number of plate heights of a loading curve, with Hermite cubics of exact slopes in between."""
 _SOLID_STEPS = 30
-_HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,14 +223,12 @@ def _inverse(level: Array, travel: Array, force: Array, slope: Array) -> Array:
     low, high = travel[rows, after - 1], travel[rows, after]
     f0, f1 = force[rows, after - 1], force[rows, after]
     m0, m1 = slope[rows, after - 1] * (high - low), slope[rows, after] * (high - low)
-    left, right = np.zeros_like(level), np.ones_like(level)
-    for _ in range(_HALVINGS):
-        s = 0.5 * (left + right)
-        value = (
-            f0 * (1 + 2 * s) * (1 - s) ** 2 + m0 * s * (1 - s) ** 2 + f1 * s * s * (3 - 2 * s) + m1 * s * s * (s - 1)
-        )
-        left, right = np.where(value < level, s, left), np.where(value < level, right, s)
-    return np.asarray(low + 0.5 * (left + right) * (high - low))
+
+    def excess(s: Array) -> Array:
+        value = (f0 * (1 + 2 * s) + m0 * s) * (1 - s) ** 2 + (f1 * (3 - 2 * s) + m1 * (s - 1)) * s * s
+        return np.asarray(value - level)
+
+    return np.asarray(low + bisected(excess, np.zeros_like(level), np.ones_like(level)) * (high - low))
 
 
 Control = Literal["height", "force"]

@@ -95,8 +95,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
         left_out=left_out or None,
         mould=None if assembly.mould is None else mould_record(assembly.mould),
     )
-    write_folder(folder, made)
-    return folder
+    return write_folder(folder, made)
 
 
 def input_hash(evaluation: Evaluation) -> str:

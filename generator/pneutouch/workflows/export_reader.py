@@ -1,7 +1,7 @@
 """Export of a sensor's pressure-to-force model for a microcontroller and Python, and of its model for a simulator."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from pneutouch.mechanics import predict
 from pneutouch.output.files import digest, json_bytes, with_manifest, write_folder
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.results.reader import ReaderRecord, ReaderSource, SimulatedState, SimulatorRecord, TableError
-from pneutouch.results.record import plain
+from pneutouch.results.record import extended, plain
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
 
@@ -48,8 +48,9 @@ def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResu
     tables = reader_tables(evaluation, grid, aged)
     known = reader_difference(evaluation, grid, versioned("reader", plain(tables)))
     full_N = tables.box.contact_force_N[1]
-    record = ReaderRecord(
-        **{field.name: getattr(tables, field.name) for field in fields(tables)},
+    record = extended(
+        ReaderRecord,
+        tables,
         difference=TableError(
             nominal_N=known.nominal_N,
             nominal_percent=100.0 * known.nominal_N / full_N,
@@ -75,10 +76,8 @@ def _source(evaluation: Evaluation, age_days: float) -> str:
 
 def write_reader(result: ReaderResult, out: Path) -> Path:
     """Write ``out/<design>-reader/`` and return that folder. The same input gives the same bytes."""
-    folder = out / result.name
     files = {"reader.json": json_bytes(result.document), **result.files}
-    write_folder(folder, with_manifest(files, result.name, result.document["source"]))
-    return folder
+    return write_folder(out / result.name, with_manifest(files, result.name, result.document["source"]))
 
 
 def readme(sensor: SimulatedSensor, kind: str) -> bytes:
@@ -186,6 +185,4 @@ def _record(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> Simul
 
 def write_simulator(result: SimulatorResult, out: Path) -> Path:
     """Write ``out/<design>-<simulator>/`` and return that folder. The same input gives the same bytes."""
-    folder = out / result.name
-    write_folder(folder, with_manifest(result.files, result.name, result.inputs))
-    return folder
+    return write_folder(out / result.name, with_manifest(result.files, result.name, result.inputs))

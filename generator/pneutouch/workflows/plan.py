@@ -233,8 +233,7 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
         **plan.copied,
     }
     inputs = {key: document[key] for key in ("design", "rig", "sensors", "tests")}
-    write_folder(folder, with_manifest(files, plan.name, inputs))
-    return folder
+    return write_folder(folder, with_manifest(files, plan.name, inputs))
 
 
 Tests = Mapping[RunKind, tuple[RunProtocol, tuple[float, ...]]]

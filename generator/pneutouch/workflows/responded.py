@@ -1,11 +1,9 @@
 """A simulated signal as the record that ``respond`` prints, and as files with a chart."""
 
-import io
 from pathlib import Path
 
 import numpy as np
 
-from pneutouch.arrays import Array
 from pneutouch.evaluation.dynamics import BASIS, gauge_rate_Hz
 from pneutouch.formats import versioned
 from pneutouch.mechanics.line.transient import gain_at, highest_frequency
@@ -14,6 +12,7 @@ from pneutouch.output.recipe import BuildRecipe
 from pneutouch.report.fit_charts import GainCurve, TimeCurves, response_chart
 from pneutouch.results.record import plain
 from pneutouch.results.response import LoadResponse, StateResponse
+from pneutouch.tables.csv_table import columns_csv
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
 from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
@@ -99,12 +98,11 @@ def write_respond(run: RespondRun, record: LoadResponse, out: Path) -> Path:
         files[f"signal-{number + 1}.csv"] = _signal_csv(run, signal)
         if signal.samples is not None:
             columns = {"time_s": signal.samples.time, "gauge_pressure_kPa": signal.samples.reading / KPA}
-            files[f"samples-{number + 1}.csv"] = _csv(columns)
+            files[f"samples-{number + 1}.csv"] = columns_csv(columns)
     load = run.load
     requested = {"peak": load.peak, "unit": load.unit, "sine_Hz": load.frequency, "duration_s": load.duration}
     inputs = {**BuildRecipe.of(run.evaluation).inputs(), "load": requested, "seed": run.seed}
-    write_folder(folder, with_manifest(files, name, inputs))
-    return folder
+    return write_folder(folder, with_manifest(files, name, inputs))
 
 
 def _signal_csv(run: RespondRun, signal: StateSignal) -> bytes:
@@ -112,16 +110,7 @@ def _signal_csv(run: RespondRun, signal: StateSignal) -> bytes:
     loaded = "indentation_mm" if run.load.travel else "contact_force_N"
     rises = {"slow": signal.slow, "cavity": signal.cavity, "gauge": signal.gauge}
     columns = {f"{name}_pressure_rise_kPa": values[every] / KPA for name, values in rises.items()}
-    return _csv({"time_s": signal.time[every], loaded: signal.load[every], **columns})
-
-
-def _csv(columns: dict[str, Array]) -> bytes:
-    text = io.StringIO()
-    text.write(",".join(columns) + "\n")
-    # Zeros that are rounding have one form.
-    table = np.round(np.stack(list(columns.values()), axis=1), 9) + 0.0
-    np.savetxt(text, table, fmt="%.9g", delimiter=",")
-    return text.getvalue().encode()
+    return columns_csv({"time_s": signal.time[every], loaded: signal.load[every], **columns})
 
 
 def _chart(run: RespondRun) -> str:

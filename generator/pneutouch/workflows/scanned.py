@@ -1,6 +1,5 @@
 """A scan as the record that ``scan`` prints, and as a folder: signals, record, figure and manifest."""
 
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,8 +10,9 @@ import numpy as np
 from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.scalogram import ScannedState, scalogram_chart
-from pneutouch.results.record import plain
+from pneutouch.results.record import extended, plain
 from pneutouch.results.scan import BarsRecord, ScanRecord, SignalRecord, SimulatedSignal, SoughtPattern
+from pneutouch.tables.csv_table import columns_csv
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.separate import noise_amplitude
@@ -125,11 +125,9 @@ def _signal(run: ScanRun, number: int, seen: AnalysedSignal) -> SignalRecord:
     at = seen.touch
     if at is None or seen.substrate is None:
         return signal
-    return SimulatedSignal(
-        label=signal.label,
-        signal=signal.signal,
-        duration_s=signal.duration_s,
-        patterns=patterns,
+    return extended(
+        SimulatedSignal,
+        signal,
         driving_pressure_kPa=at.driving_pressure / KPA,
         contact_radius_mm=at.contact_radius,
         indentation_mm=at.indentation,
@@ -191,8 +189,7 @@ def write_scan(run: ScanRun, record: ScanRecord, out: Path) -> Path:
     files = {"scan.json": json_bytes(versioned("scan", plain(record))), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
-    write_folder(folder, with_manifest(files, run.name, _inputs(run)))
-    return folder
+    return write_folder(folder, with_manifest(files, run.name, _inputs(run)))
 
 
 def signal_csv(seen: AnalysedSignal, bars: Sequence[BarRow], highest: float) -> bytes:
@@ -204,7 +201,4 @@ def signal_csv(seen: AnalysedSignal, bars: Sequence[BarRow], highest: float) -> 
         columns["place_mm"] = seen.scan.place[every]
         columns["noiseless_kPa"] = seen.scan.clean[every] / KPA
         columns |= {f"bar_{k + 1}": row.covers(seen.scan.place[every]) for k, row in enumerate(bars)}
-    text = io.StringIO()
-    text.write(",".join(columns) + "\n")
-    np.savetxt(text, np.stack(list(columns.values()), axis=1), fmt="%.9g", delimiter=",")
-    return text.getvalue().encode()
+    return columns_csv(columns)

@@ -126,8 +126,7 @@ def write_calibration(calibration: Calibration, out: Path, source: CampaignSourc
         "priors": fitted.priors,
         "hold_out_kPa": [one.driving_pressure_kPa for one in calibration.held_out],
     }
-    write_folder(folder, with_manifest(files, folder.name, inputs))
-    return folder
+    return write_folder(folder, with_manifest(files, folder.name, inputs))
 
 
 def default_name(design: str, sensor: str) -> str:

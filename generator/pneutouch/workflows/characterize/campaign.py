@@ -306,8 +306,7 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
         files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
     listed = {name: plain(file_entry(content)) for name, content in sorted(files.items())}
     files[MANIFEST] = manifest(listed, outcome.name, input_hash=measured.input_hash)
-    write_folder(folder, files)
-    return folder
+    return write_folder(folder, files)
 
 
 def _shown(measured: CampaignReport, evidence: str) -> list[MeasuredCurve]:

@@ -18,7 +18,8 @@ from pneutouch.printability import check, refuse
 from pneutouch.printability.subject import PrintItem, PrintSubject
 from pneutouch.report.section import loops_path
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
-from pneutouch.results.printing import Finding, TrayFinding
+from pneutouch.results.printing import TrayFinding
+from pneutouch.results.record import extended
 from pneutouch.results.tray import LabelRow, TrayJobRecord, TrayRecord
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.tables.csv_table import csv_bytes
@@ -222,7 +223,7 @@ def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
 
 def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
     """Findings, errors first. Of copies, and of equal shapes in resins of one kind, only the first is judged."""
-    listed, names = [], [field.name for field in fields(Finding)]
+    listed: list[TrayFinding] = []
     for job in layout.jobs:
         alike: dict[object, list[int]] = {}
         for k, part in enumerate(job.parts):
@@ -231,7 +232,7 @@ def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
         for places in alike.values():
             labels = tuple(job.parts[k].label for k in places)
             judged = check(subject(job.parts[places[0]], layout.printer, job.mode))
-            listed += [TrayFinding(**{name: getattr(f, name) for name in names}, labels=labels) for f in judged]
+            listed += [extended(TrayFinding, finding, labels=labels) for finding in judged]
     return tuple(sorted(listed, key=lambda one: one.rank))
 
 
