@@ -22,11 +22,11 @@ from pneutouch.results.comparison import (
     ColumnRecord,
     ComparedCurve,
     ComparisonRecord,
-    CurvePoints,
     DifferenceRecord,
     RowRecord,
     ValueRecord,
 )
+from pneutouch.results.prediction import CurvePoints
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, extended
 from pneutouch.wording import rounded
 

@@ -338,11 +338,10 @@ def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
         target, is_folder = fresh / name, path.is_dir() and not path.is_symlink()
-        if name in listed or (is_folder and (target.is_dir() or any(path.iterdir()))):
+        there = os.path.lexists(target)
+        if name in listed or (again and there) or (is_folder and (target.is_dir() or any(path.iterdir()))):
             continue
-        if again and os.path.lexists(target):
-            continue
-        if os.path.lexists(target) or not (is_folder or path.is_symlink() or path.is_file()):
+        if there or not (is_folder or path.is_symlink() or path.is_file()):
             raise _of_others(path)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)

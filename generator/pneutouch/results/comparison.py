@@ -4,17 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-
-@dataclass(frozen=True, slots=True)
-class CurvePoints:
-    """A loading curve, lists of one length."""
-
-    indentation_mm: tuple[float, ...]
-    """Travel of the object after first contact."""
-    contact_force_N: tuple[float, ...]
-    """Force on the object."""
-    pressure_rise_kPa: tuple[float, ...]
-    """Cavity pressure less driving pressure."""
+from pneutouch.results.prediction import CurvePoints
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,14 +39,14 @@ class ColumnRecord:
 
 @dataclass(frozen=True, slots=True)
 class ValueRecord:
-    """A figure and the ends of its interval, null if unknown."""
+    """A figure and the ends of its interval."""
 
     value: float
     """Value of the figure."""
     low: float | None
-    """Lower end of the interval."""
+    """Lower end of the interval; null: not known."""
     high: float | None
-    """Upper end of the interval."""
+    """Upper end of the interval; null: not known."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pneutouch.results.comparison import ValueRecord
 from pneutouch.spec.campaign import RunKind
 
 
@@ -39,29 +40,17 @@ class ReadFiles(ReadTables):
 
 
 @dataclass(frozen=True, slots=True)
-class PredictedFigure:
+class PredictedFigure(ValueRecord):
     """A predicted figure, read as the measured one is."""
 
-    value: float
-    """Value of the figure."""
-    low: float | None
-    """Lower end of the interval; null: not known."""
-    high: float | None
-    """Upper end of the interval; null: not known."""
     measured_off_percent: float | None
     """Measured over predicted, less 100 %; null: the prediction is 0."""
 
 
 @dataclass(frozen=True, slots=True)
-class CampaignFigure:
+class CampaignFigure(ValueRecord):
     """A measured figure."""
 
-    value: float
-    """Measured value of the figure."""
-    low: float | None
-    """Lower end of the interval; null: there is none."""
-    high: float | None
-    """Upper end of the interval; null: there is none."""
     unit: str
     """Unit of the value."""
     specimens: int

@@ -61,7 +61,7 @@ class ErrorEstimate:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class CurvePoints:
     """A loading curve, lists of one length."""
 
     indentation_mm: tuple[float, ...]
@@ -70,6 +70,12 @@ class Curve:
     """Force on the object."""
     pressure_rise_kPa: tuple[float, ...]
     """Cavity pressure less driving pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve(CurvePoints):
+    """A loading curve with the contact and the wall at its points."""
+
     contact_radius_mm: tuple[float, ...]
     """Radius of the edge of contact."""
     max_stretch: tuple[float, ...]

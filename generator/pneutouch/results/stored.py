@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pneutouch.results.stack import ResinVoxels
+
 
 @dataclass(frozen=True, slots=True)
 class ShownBody:
@@ -66,15 +68,9 @@ class ShownPackage:
 
 
 @dataclass(frozen=True, slots=True)
-class PrintedResin:
+class PrintedResin(ResinVoxels):
     """A resin of a stack, counted in the slices."""
 
-    rgba: tuple[int, ...]
-    """Colour of the resin in the slices."""
-    voxels: int
-    """Number of voxels."""
-    volume_mm3: float
-    """Volume of its voxels."""
     share_of_the_print: float
     """Voxels of this resin over those of all resins."""
 

@@ -162,20 +162,14 @@ class Pneumatics(SparseTable):
     ambient_pressure_kPa: float = number(
         101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."
     )
-    tube: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Tube between port and pressure sensor; left out: the port's usual one.",
-        json_schema_extra={"registry": "tubes"},
+    tube: str | None = name(
+        None, registry="tubes", help="Tube between port and pressure sensor; left out: the port's usual one."
     )
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
     )
-    gauge: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Pressure gauge at the end of the tube; left out: the paper's, +-100 kPa.",
-        json_schema_extra={"registry": "gauges"},
+    gauge: str | None = name(
+        None, registry="gauges", help="Pressure gauge at the end of the tube; left out: the paper's, +-100 kPa."
     )
     dead_volume_mL: float | None = number(
         None,

@@ -106,7 +106,7 @@ def numbers(default: list[float], *, unit: str, low: float, high: float, help: s
     )
 
 
-def name(default: str, *, registry: str, help: str) -> Any:
+def name(default: str | None, *, registry: str, help: str) -> Any:
     """Declare a name that the catalogue resolves in ``registry`` (materials, printers, ports ...)."""
     return Field(default=default, min_length=1, description=help, json_schema_extra={"registry": registry})
 

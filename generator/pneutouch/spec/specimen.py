@@ -203,12 +203,7 @@ class MinimalSurface(_Celled):
 class FramePlate(Table):
     """[frame]: a rigid plate under the block, wider than it, a hole in each corner and a cut corner at x = y = 0."""
 
-    material: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Material; left out: that of the patterns.",
-        json_schema_extra={"registry": "materials"},
-    )
+    material: str | None = name(None, registry="materials", help="Material; left out: that of the patterns.")
     border_mm: float = number(8.0, unit="mm", low=1, high=100, help="Width of the plate beyond the block.")
     thickness_mm: float = number(3.0, unit="mm", low=0.5, high=50, help="Thickness of the plate.")
     hole_diameter_mm: float = number(

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from pneutouch.spec.fields import FieldsError, SparseTable, Table, number
+from pneutouch.spec.fields import FieldsError, SparseTable, Table, name, number
 from pneutouch.spec.printer import Process
 
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
@@ -158,18 +158,11 @@ class Setting(SparseTable):
 
     left_out = ("gauge", "processes")
 
-    base: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Name or path of a design; left out: the defaults.",
-        json_schema_extra={"registry": "designs"},
-    )
+    base: str | None = name(None, registry="designs", help="Name or path of a design; left out: the defaults.")
     assignments: list[str] = Field(
         default=[], max_length=100, description="What changes the base design, TABLE.KEY=VALUE each."
     )
-    profile: str | None = Field(
-        default=None, min_length=1, description="Printer of the membrane.", json_schema_extra={"registry": "printers"}
-    )
+    profile: str | None = name(None, registry="printers", help="Printer of the membrane.")
     processes: list[Literal["any", Process]] | None = Field(
         default=None,
         min_length=1,
@@ -180,11 +173,10 @@ class Setting(SparseTable):
     dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
     )
-    gauge: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
-        json_schema_extra={"registry": "gauges"},
+    gauge: str | None = name(
+        None,
+        registry="gauges",
+        help="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
     )
 
     @field_validator("processes", mode="before")

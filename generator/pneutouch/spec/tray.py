@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import Printable
-from pneutouch.spec.fields import Table, number
+from pneutouch.spec.fields import Table, name, number
 from pneutouch.spec.read import toml_value
 from pneutouch.spec.values import is_finite
 
@@ -40,11 +40,8 @@ class TrayHead(Table):
     """[tray]: the printer and how parts lie on it."""
 
     title: Printable = Field(default="Tray of touch sensors", max_length=80, description="Title of the label list.")
-    profile: str | None = Field(
-        default=None,
-        min_length=1,
-        description="Printer; left out: the printer of the first entry's membrane.",
-        json_schema_extra={"registry": "printers"},
+    profile: str | None = name(
+        None, registry="printers", help="Printer; left out: the printer of the first entry's membrane."
     )
     spacing_mm: float = number(3.0, unit="mm", low=0.5, high=50, help="Least distance between bounding boxes.")
     margin_mm: float = number(5.0, unit="mm", low=0, high=50, help="Border of the envelope that is left free.")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, TypedDict
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from pneutouch.shape.meridian import Meridian
 from pneutouch.studio.form import Question
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
+
+Named = TypeVar("Named")
 
 _DIGITS = 6
 
@@ -109,7 +111,7 @@ class Answers:
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
         drawing, why = _drawn_design(assembly), outside("atlas", sensor_of(assembly))
-        answer = partial(QuickAnswer, **_head(source), version=version, drawing=drawing)
+        answer = partial(_named(QuickAnswer, source), version=version, drawing=drawing)
         if why is not None:
             return answer(outside=why, prediction=None, curves=None)
         resins = partial(elastomers, self._library, scene.printer.is_casting)
@@ -150,8 +152,7 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     scene = load_scene(source, {}, library)
     resins = partial(elastomers, library, scene.printer.is_casting)
     evaluation = evaluate_scene(scene, resins, PredictionOptions(USUAL))
-    return FullAnswer(
-        **_head(source),
+    return _named(FullAnswer, source)(
         prediction=Prediction(evaluation).to_dict(),
         curves=_curves(evaluation),
         check=CheckResult(source.name, tuple(evaluation.findings)).to_dict(),
@@ -160,17 +161,11 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     )
 
 
-class _Head(TypedDict):
-    name: str
-    title: str
-    values: Mapping[str, Any]
-    depth_mm: float
-
-
-def _head(source: DesignSource) -> _Head:
+def _named(kind: Callable[..., Named], source: DesignSource) -> partial[Named]:
+    """Maker of an answer of a ``kind``, with name, title, values and depth of its design."""
     file = source.changed({})
     values = file.model_dump(mode="json", by_alias=True)
-    return {"name": source.name, "title": file.document.title, "values": values, "depth_mm": file.depth_mm}
+    return partial(kind, name=source.name, title=file.document.title, values=values, depth_mm=file.depth_mm)
 
 
 def _curves(evaluation: Evaluation) -> PageCurves:

@@ -16,6 +16,7 @@ from pneutouch.errors import InputError
 from pneutouch.report.measured import GroupComparison
 from pneutouch.report.measured.tables import some
 from pneutouch.report.numbers import overlap
+from pneutouch.results.comparison import ValueRecord
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
@@ -54,16 +55,7 @@ class PageRun(RunOfSensor):
 
 
 @dataclass(frozen=True, slots=True)
-class FigureEnds:
-    """A figure with the ends of its interval, None if they are not known."""
-
-    value: float
-    low: float | None
-    high: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class PageFigure(FigureEnds):
+class PageFigure(ValueRecord):
     """A measured figure with its 95 % interval, the predicted one with its band, and the paper's."""
 
     key: str
@@ -72,7 +64,7 @@ class PageFigure(FigureEnds):
     interval_over: str | None
     specimens: int
     runs: int
-    predicted: FigureEnds | None = None
+    predicted: ValueRecord | None = None
     agrees: bool | None = None
     published: float | None = None
 
@@ -184,7 +176,7 @@ def _figures(comparison: GroupComparison) -> tuple[PageFigure, ...]:
                 estimate.over or None,
                 estimate.specimens,
                 estimate.runs,
-                predicted=None if predicted is None else FigureEnds(*predicted),
+                predicted=None if predicted is None else ValueRecord(*predicted),
                 agrees=None if agrees is None else bool(agrees),
                 published=comparison.published.get(key),
             )

@@ -39,7 +39,8 @@ from pneutouch.output.files import (
 )
 from pneutouch.output.recipe import read_recipe
 from pneutouch.parts import Assembly, assemble
-from pneutouch.results.comparison import ComparisonRecord, CurvePoints
+from pneutouch.results.comparison import ComparisonRecord
+from pneutouch.results.prediction import CurvePoints
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.compare_measured import (

@@ -17,7 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import CURVE_KEYS, ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.formats import check_format
 from pneutouch.output.files import MANIFEST, digest
-from pneutouch.results.comparison import CurvePoints
+from pneutouch.results.prediction import CurvePoints
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.values import is_finite
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,14 @@ from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
-from pneutouch.mechanics.models.solid import curve_between, press_settings, reported_events, solid_result
+from pneutouch.mechanics.models.solid import (
+    curve_between,
+    free_figures,
+    press_settings,
+    pressed_columns,
+    reported_events,
+    solid_result,
+)
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
@@ -225,17 +232,11 @@ def _record(
     """Record of one press for a prediction; ``last_change``: of the figures when the order was last raised."""
     happened, end = reported_events(pressed.events), _range_end(sensor, pressed)
     return SensorState(
-        driving_pressure=pressure,
-        apex_inner=free.inner_apex,
-        apex_outer=free.outer_apex,
-        cavity_volume=free.volume,
-        range_end=end,
-        figures=_figures(pressed, end, sensor.protocol.steps),
-        indentation=pressed.column("indentation"),
-        force=pressed.column("force"),
-        pressure_rise=pressed.column("rise"),
-        contact_radius=pressed.column("contact_radius"),
-        max_stretch=pressed.column("stretch"),
+        pressure,
+        *free_figures(free),
+        end,
+        _figures(pressed, end, sensor.protocol.steps),
+        *pressed_columns(pressed),
         events=tuple(happened),
         beyond_axis=OffAxisCurve(
             pressed.order,
@@ -256,18 +257,9 @@ def _to_end(pressed: OffAxisPath, end: float) -> RangeCurve:
 
 
 def _shear_curve(path: ShearPath) -> ShearCurve:
-    return ShearCurve(
-        travel=path.column("travel"),
-        force=path.column("force"),
-        sideways=path.column("sideways"),
-        moment=path.column("moment"),
-        rise=path.column("rise"),
-        sliding=path.column("sliding"),
-        stiffness=path.stiffness,
-        peak=path.peak,
-        slips_from=path.slips_from,
-        ended=path.ended,
-    )
+    names = ("travel", "force", "sideways", "moment", "rise", "sliding")
+    columns: dict[str, Any] = {name: path.column(name) for name in names}
+    return ShearCurve(**columns, stiffness=path.stiffness, peak=path.peak, slips_from=path.slips_from, ended=path.ended)
 
 
 def _figures(pressed: OffAxisPath, end: float, steps: int) -> Figures[float] | None:

@@ -48,7 +48,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.object_contact import PressedFace
-    from pneutouch.mechanics.harmonic.press import OffAxisState
+    from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisState
     from pneutouch.mechanics.solid.indenter import RigidObject
 
 _SUMMARY = (
@@ -291,23 +291,28 @@ def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, run: Inflation, p
     last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     section = partial(_section, press.body, body.height, probe.solid.length)
     return SensorState(
-        driving_pressure=pressure,
-        apex_inner=free.inner_apex,
-        apex_outer=free.outer_apex,
-        cavity_volume=free.volume,
-        range_end=end,
-        figures=figures(grid, force, rise / KPA),
-        indentation=pressed.column("indentation"),
-        force=pressed.column("force"),
-        pressure_rise=pressed.column("rise"),
-        contact_radius=pressed.column("contact_radius"),
-        max_stretch=pressed.column("stretch"),
+        pressure,
+        *free_figures(free),
+        end,
+        figures(grid, force, rise / KPA),
+        *pressed_columns(pressed),
         max_von_mises=pressed.column("von_mises"),
         events=tuple(happened),
         shapes=_shapes(probe, free, last, section),
         walls=_walls(probe.solid.mesh, pressed, section),
         face=partial(_face, sensor, probe.solid.mesh, body, last.positions, last.indentation),
     )
+
+
+def free_figures(free: FreeState) -> tuple[float, float, float]:
+    """Heights of the apex inside and outside (mm) and volume (mm3) of the inflated dome, as in `SensorState`."""
+    return free.inner_apex, free.outer_apex, free.volume
+
+
+def pressed_columns(pressed: IndentationPath | OffAxisPath) -> tuple[Array, Array, Array, Array, Array]:
+    """Indentation, force, pressure rise, contact radius and greatest stretch of a press, as in `SensorState`."""
+    column = pressed.column
+    return column("indentation"), column("force"), column("rise"), column("contact_radius"), column("stretch")
 
 
 def reported_events(events: list[SolidEvent]) -> list[Event]:
