@@ -1,7 +1,5 @@
 """Designs, builds and measurements side by side: their differences, and their figures with intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +36,7 @@ class Comparison(show.Documented):
         """Labels of the columns, all different."""
         return tuple(comparison_words.labels(self._result.record))
 
-    def to_frame(self) -> DataFrame:
+    def to_frame(self) -> "DataFrame":
         """Table with a row for each figure and driving pressure (None: of the whole sensor); columns ``value``,
         ``low``, ``high`` by label, and for the difference from the first ``percent``, its two ends and ``exceeds``."""
         from pandas import DataFrame, MultiIndex

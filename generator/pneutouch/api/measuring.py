@@ -1,7 +1,5 @@
 """Scans, signals and campaigns: planned, simulated, read and fitted; and a material of a laboratory's own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -135,7 +133,7 @@ class FittedSensor(Result):
     `name` is None if the fit cannot be a calibration, such as with a modulus on its bound; the last note says why.
     """
 
-    def __init__(self, outcome: CalibrationOutcome) -> None:
+    def __init__(self, outcome: "CalibrationOutcome") -> None:
         super().__init__("Calibration", plain(outcome.record))
         self._outcome = outcome
         self.name: str | None = outcome.record.calibration

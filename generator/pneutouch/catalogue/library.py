@@ -4,8 +4,6 @@ Files in the user's folder come before the shipped ones, so a lab's own printer 
 sweep and resins of a selection read every file once (`CachedLibrary`).
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -178,7 +176,7 @@ class Library:
     folders: tuple[Path, ...]
 
     @staticmethod
-    def default() -> Library:
+    def default() -> "Library":
         """The user's folder, then the shipped one."""
         return Library((user_folder().absolute(), shipped_root()))
 

@@ -1,7 +1,5 @@
 """``pneutouch coupons``: test prints, and what a lab measured on them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -98,7 +96,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
         echo(results_text(report))
 
 
-def _options(given: dict[str, Any]) -> CouponOptions:
+def _options(given: dict[str, Any]) -> "CouponOptions":
     """The order of coupons from the options given. Raises InputError for copies that are not a number."""
     from pneutouch.errors import InputError
     from pneutouch.workflows.coupons.order import CouponOptions

@@ -1,7 +1,5 @@
 """``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -72,7 +70,7 @@ def respond(
             report_next("build", design, *set_words(set_, calibration))
 
 
-def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> Load:
+def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> "Load":
     """The load that the options describe. Raises InputError if they contradict one another."""
     from pneutouch.errors import InputError
     from pneutouch.workflows.respond import Load, frequency_Hz, load_size

@@ -1,7 +1,5 @@
 """``pneutouch select``: the inverse problem, from a target to designs."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 import time
@@ -178,7 +176,7 @@ def _refuse(target: Target, **given: bool) -> None:
         raise InputError(f"{', '.join(refused)} cannot be given with --graded")
 
 
-def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
+def _report(answer: "TargetAnswer", path: Path | None, *, json: bool) -> None:
     """Show the answer, and where the design picked was saved. Exits 1 if no design meets the target."""
     if json:
         print_json({**plain(answer.record), "written": None if path is None else str(path)})

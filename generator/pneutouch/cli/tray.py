@@ -1,7 +1,5 @@
 """``pneutouch tray``: several sensors on one tray of a printer."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -70,7 +68,7 @@ def tray(
 
 def _order(
     what: list[str], over: list[str], copies: int | None, changed: dict[str, Any], head: dict[str, str | None]
-) -> TrayOrder:
+) -> "TrayOrder":
     """The order of a tray: from a tray file if the one word given is a file with an [[entry]], else from designs and
     flags."""
     from pneutouch.workflows.tray.order import is_tray_file, order_of_file, order_of_flags

@@ -5,8 +5,6 @@ paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), secti
 makers.
 """
 
-from __future__ import annotations
-
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
@@ -47,7 +45,7 @@ class Figures(NamedTuple, Generic[Of]):
         force: Of = np.minimum(self.force_high, self.saturation_force)
         return force
 
-    def scaled(self, force: float, rise: float) -> Figures[Of]:
+    def scaled(self, force: float, rise: float) -> "Figures[Of]":
         """Figures of the same curve with its forces times ``force`` and its pressure rises times ``rise``."""
         return self._replace(
             sensitivity=self.sensitivity * rise / force,

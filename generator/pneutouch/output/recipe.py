@@ -3,8 +3,6 @@
 Nothing of a recipe that is read from a 3MF is used before it is validated.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 from collections.abc import Collection, Mapping
@@ -42,7 +40,7 @@ class BuildRecipe:
     version: str = __version__
 
     @staticmethod
-    def of(evaluation: Evaluation) -> BuildRecipe:
+    def of(evaluation: Evaluation) -> "BuildRecipe":
         """The recipe that an evaluation followed."""
         return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.options)
 

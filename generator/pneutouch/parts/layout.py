@@ -11,8 +11,6 @@ flange, which the seat holds, so the dome is clamped at z = 0.
                     | | | |             port: behind, or out of the plate's side
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -62,7 +60,7 @@ class Layout:
     port: PortShape
     port_axis: float | None
     flange_draft: float = 0.0
-    ring: RingSize | None = None
+    ring: "RingSize | None" = None
 
     @property
     def inner_radius(self) -> float:

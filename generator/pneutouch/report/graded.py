@@ -1,7 +1,5 @@
 """Charts of a graded membrane: its resins and modulus along the arc, and its response beside constant mixes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -70,7 +68,7 @@ def _along(along: ArcGrading, values: Array, label: str, mean: float | None = No
     return drawn_svg(Chart((panel,), (SIZE[0], 0.75 * SIZE[1])))
 
 
-def _section(ax: Axes, along: ArcGrading, shape: DomeShape, stiff: str) -> None:
+def _section(ax: "Axes", along: ArcGrading, shape: DomeShape, stiff: str) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import LinearSegmentedColormap
 

@@ -1,7 +1,5 @@
 """Sheets as HTML pages and PDFs, and texts in Markdown: Jinja fills the templates, Typst sets the PDF."""
 
-from __future__ import annotations
-
 import base64
 import datetime
 import json
@@ -17,7 +15,6 @@ from pneutouch.wording import markdown_escaped
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-    from markupsafe import Markup
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -105,7 +102,7 @@ def pdf(sheet: Sheet) -> bytes:
         )
 
 
-def _environment(*, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> Environment:
+def _environment(*, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(

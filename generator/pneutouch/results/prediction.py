@@ -1,7 +1,5 @@
 """A prediction as the program states it: figures, curves, limits and rating of a sensor, in boundary units."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -49,7 +47,7 @@ class ErrorEstimate:
     summary: tuple[str, ...] = ()
     """The errors, in sentences."""
 
-    def with_sensitivity(self, error: SensitivityError) -> ErrorEstimate:
+    def with_sensitivity(self, error: SensitivityError) -> "ErrorEstimate":
         """Copy with the known error of the sensitivity, its sentence added to the summary."""
         return replace(
             self,

@@ -1,7 +1,5 @@
 """Candidates over all resins: a coarse scan, figures and rated pressures, and the margin to every limit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -45,7 +43,7 @@ class CandidatePool(NamedTuple):
     pressure: Array
     response: AtlasResponse
 
-    def take(self, rows: Index | Flags) -> CandidatePool:
+    def take(self, rows: Index | Flags) -> "CandidatePool":
         """The candidates in these rows."""
         return CandidatePool(
             self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows)

@@ -1,7 +1,5 @@
 """Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -191,7 +189,7 @@ class Sleeve(Mount):
     set_screw_count: int = Field(ge=2, le=3, description="Number of set screws.")
     set_screw_core_diameter: Length = Field(description="Holes of the set screws, to be tapped.")
 
-    def for_finger(self, diameter: float) -> Sleeve:
+    def for_finger(self, diameter: float) -> "Sleeve":
         """The same sleeve for a finger of another diameter in mm, its title and code with that number."""
         old, new = f"{self.finger_diameter:g}", f"{diameter:g}"
         title, code = self.title.replace(f"{old} mm", f"{new} mm"), self.code.replace(old, new)

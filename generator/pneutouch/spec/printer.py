@@ -1,7 +1,5 @@
 """A printer profile: the machine's build volume, resolution and materials."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -157,7 +155,7 @@ class Printer(Table):
         return given
 
     @model_validator(mode="after")
-    def _of_its_process(self) -> Printer:
+    def _of_its_process(self) -> "Printer":
         layered = [mode.layer_height_um is not None for mode in self.mode]
         given = {"envelope_mm": self.envelope_mm, "resolution": self.resolution}
         if self.is_casting:

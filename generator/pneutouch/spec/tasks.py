@@ -1,7 +1,5 @@
 """Tasks of a sensor: the figure that each requires, and the files that list them."""
 
-from __future__ import annotations
-
 import csv
 import re
 from pathlib import Path
@@ -37,7 +35,7 @@ class DrivingTask(Table):
     force_range_N: float | None = number(None, unit="N", low=1e-4, high=1e5, help="Contact force at the range's end.")
 
     @model_validator(mode="after")
-    def _one_figure(self) -> DrivingTask:
+    def _one_figure(self) -> "DrivingTask":
         given = [key for key in TASK_FIGURES.values() if getattr(self, key) is not None]
         if len(given) != 1:
             stated = f"{' and '.join(given)} are given" if given else "no figure is given"

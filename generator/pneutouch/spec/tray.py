@@ -1,7 +1,5 @@
 """A tray file, with the grammar of ``table.key=VALUES``: values with commas between, or a range ``from:to:count``."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
@@ -82,7 +80,7 @@ class Entry(Table):
         return flat
 
     @model_validator(mode="after")
-    def _one_key_over(self) -> Entry:
+    def _one_key_over(self) -> "Entry":
         if len(self.over) > 1:
             raise ValueError(f"over varies {', '.join(self.over)}; it must vary one key, write more entries instead")
         for key, values in self.over.items():

@@ -5,8 +5,6 @@ also reads ``1_0`` as ten, ``nan``, and digits of other scripts. Designs, specim
 share one rule for names, because these name files and bodies of a 3MF too.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys
@@ -32,7 +30,7 @@ class Quantity(Table):
     source: str = Field(min_length=8, description="Table, page or DOI; how far it was verified.")
 
     @model_validator(mode="after")
-    def _is_not_empty(self) -> Quantity:
+    def _is_not_empty(self) -> "Quantity":
         if self.value is None and (self.low is None or self.high is None):
             raise ValueError("give value, or low and high")
         if self.low is not None and self.high is not None and self.low > self.high:

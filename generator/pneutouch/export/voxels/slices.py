@@ -7,8 +7,6 @@ ranks alike. Each block is shifted by an amount of its own, else the block would
 no blue noise.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -156,7 +154,7 @@ class Cubes:
     edge: tuple[int, int, int]
 
     @staticmethod
-    def over(shape: tuple[int, int, int], pitch: tuple[float, float, float], edge: float) -> Cubes:
+    def over(shape: tuple[int, int, int], pitch: tuple[float, float, float], edge: float) -> "Cubes":
         """Cubes of about ``edge`` mm over a window of voxels of ``pitch`` mm along x, y, z."""
         counts = tuple(max(1, round(edge / step)) for step in reversed(pitch))
         return Cubes(shape, counts)  # type: ignore[arg-type]

@@ -3,8 +3,6 @@
 It moves sideways in the plane of symmetry, at the height to which it was pressed, and friction drags the wall along.
 """
 
-from __future__ import annotations
-
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Self
@@ -54,7 +52,7 @@ class SlidObject(Surface):
         """Radii between which the underside belongs to the body itself, see `RigidObject.span`."""
         return self.body.span
 
-    def at(self, height: float) -> SlidObject:
+    def at(self, height: float) -> "SlidObject":
         """The object after the travel ``height``."""
         return replace(self, travel=height)
 

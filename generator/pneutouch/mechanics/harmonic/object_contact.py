@@ -3,8 +3,6 @@
 Contact is the solid's penalty at points in space; a pressed wall has positions, contact forces and pressures at nodes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,7 +50,7 @@ class PressedFace:
         """Number of edges of the wall's outer face."""
         return len(self.areas) - 1
 
-    def scaled(self, force: float) -> PressedFace:
+    def scaled(self, force: float) -> "PressedFace":
         """The face with all forces multiplied by ``force``."""
         return self if force == 1.0 else replace(self, forces=force * self.forces)
 

@@ -4,8 +4,6 @@ Also the lines by which an object is drawn over the dome (circles around its axi
 placement on or off the axis, and its height at first contact with the dome.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -49,7 +47,7 @@ class Surface(ABC):
         """Distance of points from the object's own axis, to compare with `span`."""
 
     @abstractmethod
-    def at(self, height: float) -> Surface:
+    def at(self, height: float) -> "Surface":
         """The body at another height."""
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:

@@ -12,8 +12,6 @@ the model of the press, cancels. The mass of the wall and of the pressing object
 `GasLine` holds the elements of a line from the cavity to the gauge, at one state of the air.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -111,7 +109,7 @@ class SensorDynamics:
             value = value + excess * s * time / (1.0 + s * time)
         return value
 
-    def at_once(self) -> SensorDynamics:
+    def at_once(self) -> "SensorDynamics":
         """The sensor with an elastic wall of the instantaneous stiffness; its gain is relative to the slow reading with
         that wall."""
         stiff = self.stiffening + sum(self.excess)

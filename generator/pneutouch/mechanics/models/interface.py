@@ -1,7 +1,5 @@
 """The interface of a model: the sensors it covers, its errors, its answers and its assumptions."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple
@@ -75,7 +73,7 @@ class SensorModel(ABC):
             raise answer
         return answer
 
-    def closed(self, closure: str) -> SensorModel:
+    def closed(self, closure: str) -> "SensorModel":
         """The membrane model with the named closure of its contact; any other model is returned unchanged."""
         return self
 

@@ -3,8 +3,6 @@
 Each step extrapolates, solves, checks stability, and is cut if it fails. Plate also stands for any other object.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
@@ -55,7 +53,7 @@ class PlateState:
     by_height: Array
     pressure_rate: float
     stable: bool
-    friction: FrictionState | None = None
+    friction: "FrictionState | None" = None
 
 
 def plate_state(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:

@@ -2,8 +2,6 @@
 the potentials of what fills it. All is nondimensional: lengths in R0, volumes in R0^3, pressures in mu.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import log1p
 from typing import NamedTuple, Protocol
@@ -250,7 +248,7 @@ class Gas:
     start: float
 
     @classmethod
-    def filled(cls, pressure: float, volume: float, ambient: float, dead: float) -> Gas:
+    def filled(cls, pressure: float, volume: float, ambient: float, dead: float) -> "Gas":
         """The gas shut in at a gauge pressure and a cavity volume."""
         return cls((pressure + ambient) * (volume + dead), ambient, dead, volume)
 

@@ -4,8 +4,6 @@ The banded matrix is symmetric apart from blocks of the outer wall. The leading 
 eliminated once, while the blocks of the trailing unknowns change.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -115,7 +113,7 @@ class LeadingElimination:
     rest: Array
 
     @classmethod
-    def of(cls, band: Array, first: int) -> LeadingElimination:
+    def of(cls, band: Array, first: int) -> "LeadingElimination":
         """Eliminate at most ``first`` unknowns; none if they are too few to matter or A is not definite."""
         width, size = band.shape[0] - 1, band.shape[1]
         first = min(first, size - width)

@@ -3,8 +3,6 @@
 Also the first contact of a plate or another rigid object with an inflated dome.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -274,7 +272,7 @@ class FirstTouch(NamedTuple):
 def first_touch(
     solid: SolidModel,
     free: FreeState,
-    body: RigidObject | None,
+    body: "RigidObject | None",
     plate_diameter: float | None,
     plate_rim: float | None = None,
 ) -> FirstTouch:

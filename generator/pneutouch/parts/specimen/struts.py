@@ -10,8 +10,6 @@ octant is made with a side of one, with its nodes and balls on a grid of 2^-20: 
 a node have identical facets there, not only nearly identical ones.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass, replace
@@ -76,7 +74,7 @@ class Lattice:
     sides: int
 
     @staticmethod
-    def of(kind: str, cell: float, radius: float, tolerance: float) -> Lattice:
+    def of(kind: str, cell: float, radius: float, tolerance: float) -> "Lattice":
         """Lattice with as many sides per strut as a chord tolerance (mm) requires."""
         return Lattice(kind, cell, radius, circle_count(radius, tolerance))
 

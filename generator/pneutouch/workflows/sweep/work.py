@@ -1,7 +1,5 @@
 """Computation of a sweep: a chunk of points in, a list of records out; in this process, in others, or on a cluster."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -274,7 +272,7 @@ class _PointWork:
         self.beyond.append((outcome, len(pressures_kPa) - len(kept_kPa)))
         self.left = replace(self.left, driving_pressures_kPa=tuple(kept_kPa))
 
-    def record(self, outcome: _Values | Exception | None, library: Library) -> Record:
+    def record(self, outcome: "_Values | Exception | None", library: Library) -> Record:
         """Record of the point, as plain data."""
         states: list[dict[str, Any]] = []
         values: dict[str, Any] = {}
