@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.api import show
 from pneutouch.api.driving import DrivingResult, tasks_of
 from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, number_of, plain
-from pneutouch.api.prediction import Prediction
+from pneutouch.api.prediction import Prediction, axes_of
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
@@ -39,7 +39,7 @@ def plot_section(assembly: Assembly, ax: Axes | None) -> Axes:
     """Draw the hatched section of all bodies at y = 0 into ``ax`` (None: new), lengths in mm; returns the axes."""
     from pneutouch.report.section import draw_section
 
-    ax = _axes(ax)
+    ax = axes_of(ax)
     draw_section(ax, assembly)
     return _scaled(ax)
 
@@ -55,18 +55,9 @@ def plot_mould(assembly: Assembly, ax: Axes | None, labels: bool) -> Axes:
             value=assembly.scene.design.print.profile,
             remedy='give a printer of moulds, such as profile="silicone-casting"',
         )
-    ax = _axes(ax)
+    ax = axes_of(ax)
     draw_mould(ax, assembly.mould, labels)
     return _scaled(ax)
-
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib import pyplot
-
-    made: Axes = pyplot.subplots()[1]
-    return made
 
 
 def _scaled(ax: Axes) -> Axes:

@@ -57,6 +57,16 @@ class FigureValue:
         )
 
 
+def axes_of(ax: Axes | None) -> Axes:
+    """The axes given, else new ones."""
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot
+
+    made: Axes = pyplot.subplots()[1]
+    return made
+
+
 class PredictedState(show.Shown):
     """A sensor at one driving pressure: figures, and curves over the indentation as arrays of one length.
 
@@ -171,10 +181,7 @@ class Prediction(show.Documented):
         from pneutouch.report.chart import draw_panel
         from pneutouch.report.curves import Press, rises, state_look
 
-        if ax is None:
-            from matplotlib import pyplot
-
-            ax = pyplot.subplots()[1]
+        ax = axes_of(ax)
         presses = [
             Press(s.indentation_mm, s.contact_force_N, s.pressure_rise_kPa, state_look(k, s.driving_pressure_kPa))
             for k, s in enumerate(self.states)
