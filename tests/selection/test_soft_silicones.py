@@ -24,6 +24,24 @@ def cast(library, resin, sensitivity=1.9):
 
 
 @pytest.mark.slow
+def test_a_small_soft_dome_with_a_wall_beyond_the_atlas_is_found(library):
+    content = {
+        "target": {"sensitivity_kPa_per_N": 5.0, "max_diameter_mm": 9.5},
+        "given": {"materials": ["Ecoflex0050"]},
+        "setting": {"processes": ["casting"]},
+    }
+    ((_, run),) = select_processes(validate(Target, content, "target"), "target", library).best
+    design = run.answer.designs[0]
+    wall, radius = float(design.pool.wall[0]), float(design.pool.radius[0])
+    assert wall > 0.35 * radius and 2 * (radius + wall) <= 9.5
+    found = evaluate(source_of(run.base, run.assignments(design)), {"indentation.checked_waves": 0}, library=library)
+    driven = min(
+        found.prediction.states, key=lambda state: abs(state.driving_pressure - float(design.pool.pressure[0]))
+    )
+    assert driven.figures.sensitivity == pytest.approx(5.0, rel=0.05)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("resin", ["Ecoflex0030", "Ecoflex0050"])
 def test_a_soft_silicone_is_found_and_the_solid_agrees(resin, library):
     ((_, run),) = cast(library, resin).best

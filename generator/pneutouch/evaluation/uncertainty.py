@@ -174,9 +174,9 @@ def why_unknown(sensor: Sensor, model: str) -> str | None:
     if why is None or model != "solid" or sensor.protocol.other_contact is not None:
         return why
     from pneutouch.mechanics.atlas.coverage import outside_atlas
-    from pneutouch.mechanics.atlas.figures import softer_walls
+    from pneutouch.mechanics.atlas.figures import wider_box
 
-    why = outside_atlas(sensor, softer_walls())
+    why = outside_atlas(sensor, wider_box())
     return None if why is None else f"the sensor is outside the atlas: {why}"
 
 

@@ -75,7 +75,7 @@ def test_neither_noise_nor_curvature_matters_at_the_step(library):
         whole = combined(sources, batch, chosen)
         for other in (wide, narrow):
             assert other == pytest.approx(chosen, abs=0.04)
-            assert combined(sources, batch, other) == pytest.approx(whole, rel=0.015)
+            assert combined(sources, batch, other) == pytest.approx(whole, rel=0.02)
 
 
 def test_at_the_edge_of_the_box_the_neighbourhood_is_the_same_atlas():
@@ -96,7 +96,7 @@ def test_a_sensor_near_its_limit_point_says_that_it_may_be_beyond(library):
 
 
 def test_outside_the_atlas_there_is_no_uncertainty(library):
-    sensor = material_sensor(materials(library)["TangoPlus"]).replace(wall_thickness=4.0)
+    sensor = material_sensor(materials(library)["TangoPlus"]).replace(wall_thickness=5.5)
     found = budget_for(library, batch_of(sensor, [0.0]), "TangoPlus", False)
     assert np.isnan(found.standard).all()
 

@@ -1,6 +1,6 @@
 """Sensors that the atlas covers, and the sensors that take the place of others: under a plate, and in a fit."""
 
-from pneutouch.mechanics.atlas.figures import softer_walls
+from pneutouch.mechanics.atlas.figures import wider_box
 from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.sensor import RigidBase, Sensor, WallMaterial
 from pneutouch.shape.hemisphere import no_hemisphere
@@ -92,7 +92,7 @@ _DEPTH = 0.75
 def outside_fit(sensor: Sensor) -> str | None:
     """Reason why a sensor cannot be fitted to measured runs; None if it can. A fit uses the atlas to `_DEPTH`, times
     the solid's ratio to the `stand_in` for a law, grade, softness or contact that the atlas does not cover."""
-    return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
+    return outside_atlas(stand_in(_shallow(sensor)), wider_box())
 
 
 def is_corrected(sensor: Sensor) -> bool:

@@ -145,14 +145,16 @@ class AtlasRecipe(StoredRecipe):
     ``w``, the distance of the plate below the free apex at that volume. A press with trapped gas reaches nu < 0 where
     the cavity is squeezed below its unloaded volume. ambients, first_pressures: ambient pressures (in mu; 0: vented)
     and shares of the limit pressure of the presses with trapped gas that line the edge at zero pressure. stiffest_gas:
-    greatest ambient pressure over mu that is solved; stiffest: the greatest inside the box. deepest: greatest plate
+    greatest ambient pressure over mu that is solved; stiffest: the greatest inside the box. furthest: greatest wall
+    ratio that is solved, for a search whose designs the solid confirms. deepest: greatest plate
     travel inside the box; states are solved to ``beyond``, so that the edge of the box is not the edge of the data.
     """
 
     poisson_ratio: float = 0.49
     thinnest: float = 0.06
     thickest: float = 0.35
-    walls: int = 27
+    furthest: float = 0.535
+    walls: int = 32
     margin: float = 1.07
     lowest_volume: float = -0.34
     highest_volume: float = 1.06
@@ -173,8 +175,8 @@ class AtlasRecipe(StoredRecipe):
 
     @property
     def wall_ratios(self) -> Array:
-        """Solved t0/R0, (walls,), equally spaced in the logarithm from slightly below the box to slightly above."""
-        return np.geomspace(self.thinnest / self.margin, self.thickest * self.margin, self.walls)
+        """Solved t0/R0, (walls,), equally spaced in the logarithm from slightly below the box to ``furthest``."""
+        return np.geomspace(self.thinnest / self.margin, self.furthest, self.walls)
 
     @property
     def fold_depths(self) -> Array:
@@ -194,7 +196,7 @@ def axes(recipe: AtlasRecipe) -> AtlasAxes:
     """Axes of a recipe; the walls are cubic in their logarithm, with knots at the solved wall ratios."""
     walls = recipe.wall_ratios
     return AtlasAxes(
-        SplineAxis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
+        SplineAxis(float(np.log(walls[0])), float(np.log(walls[-1])), walls.size - 1, 3),
         SplineAxis(
             recipe.lowest_volume, recipe.highest_volume, recipe.volume_cells, recipe.degree, recipe.volume_stretch
         ),

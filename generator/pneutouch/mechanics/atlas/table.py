@@ -220,7 +220,7 @@ def shipped() -> Atlas:
     return Atlas({name: table.astype(np.float64) for name, table in numbers.items()}, recipe)
 
 
-_RATIOS, _VOLUMES = 60, 91
+_RATIOS, _VOLUMES = 75, 91
 """Numbers of wall ratios and volumes. The ratios are 3 % apart: limit pressures are linear between them to 0.02 %."""
 
 
@@ -228,7 +228,7 @@ def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
     """Driving pressures over the shear modulus at which inflated domes meet their first limit, (n,).
 
     The limit is the limit point, or the break stretch (n,) if the wall reaches it earlier. A wall ratio (n,) outside
-    the box counts as the nearest one inside.
+    the tables counts as the nearest one inside.
     """
     ratios, limit, stretch, pressure = _inflations()
     least = np.interp(wall_ratio, ratios, limit)
@@ -253,8 +253,9 @@ def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
 @cache
 def _inflations() -> tuple[Array, Array, Array, Array]:
     """Wall ratios (k,), limit pressures (k,), stretches and pressures over mu up to the limit (k, volumes)."""
-    recipe = shipped().recipe
-    ratios = np.linspace(recipe.thinnest, recipe.thickest, _RATIOS)
+    walls = shipped().recipe.wall_ratios
+    # Powers are rounded: the ends stay inside the tables.
+    ratios = np.clip(np.geomspace(walls[0], walls[-1], _RATIOS), walls[0], walls[-1])
     slices = shipped().slices(ratios, ("stretch",))
     k = np.repeat(np.arange(_RATIOS), _VOLUMES)
     nu = np.tile(np.linspace(0.0, 1.0, _VOLUMES), _RATIOS)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 STEP = 0.015
 """Relative step to each side in a central difference. For smaller steps the noise of tabulated range ends grows (the
 edge of buckling is piecewise linear), for larger ones curvature, mostly where a wall lies down on its base. Half and
-twice the step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %,
+twice the step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 2 %,
 mostly by less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
 
 _ONE_PAIR = 4.0

@@ -14,7 +14,7 @@ from pneutouch.catalogue.printers import casting_missing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
-from pneutouch.mechanics.atlas.figures import softer_walls
+from pneutouch.mechanics.atlas.figures import wider_box
 from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
@@ -263,7 +263,7 @@ def _resins(
 
 def _atlas(scene: ResolvedDesign) -> Atlas:
     """Atlas to search with; for cast resins its range is extended to soft walls, as the solid corrects the result."""
-    return softer_walls() if scene.printer.is_casting else shipped()
+    return wider_box() if scene.printer.is_casting else shipped()
 
 
 def problem_of(
