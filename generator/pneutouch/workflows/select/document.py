@@ -9,7 +9,6 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.contact_object import contact_document
-from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.parts import assemble
 from pneutouch.results.record import SENSITIVITY_KEY, extended
 from pneutouch.results.selection import (
