@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pneutouch.catalogue import KINDS, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.library import elastomers
+from pneutouch.catalogue.library import elastomers, shipped_root
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.evaluate import PredictionOptions
@@ -150,16 +150,20 @@ def lab(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def again(lab) -> Path:
-    """The 3MF alone built again, under another name, where any look at a library fails."""
+    """The 3MF alone built again, under another name, where any look at a library with a user's files fails."""
 
-    def refuse(*_, **__):
-        raise AssertionError("the library was read")
+    def refusing(method):
+        def refuse(library=None, *words):
+            assert library is not None and library.folders == (shipped_root(),), "the library was read"
+            return method(library, *words)
+
+        return refuse
 
     copy = lab / "renamed by a user.3MF"
     copy.write_bytes((lab / "before/paper-dome/paper-dome.3mf").read_bytes())
     with pytest.MonkeyPatch.context() as patch:
         for method in ("paths", "load", "all", "default", "design_file"):
-            patch.setattr(Library, method, refuse)
+            patch.setattr(Library, method, refusing(getattr(Library, method)))
         return build(evaluate_recipe(read_recipe(read_threemf(copy))), lab / "again")
 
 

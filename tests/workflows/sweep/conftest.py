@@ -66,10 +66,11 @@ from pneutouch.workflows.sweep.journal import Journal
 workers._PATIENCE = {patience}
 keep, left = Journal.append, iter([*[False] * ({after} - 1), True])
 def append(self, records):
-    keep(self, records)
+    place = keep(self, records)
     if next(left, False):
         os.write({pipe}, b"held")
         sys.stdin.read()
+    return place
 Journal.append = append
 sys.argv = {words!r}
 run()
