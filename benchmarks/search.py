@@ -178,8 +178,8 @@ def _arrays(model: str, fields: dict[str, Any]) -> None:
 GROWTH: dict[str, tuple[Callable[[str, dict[str, Any]], Any], tuple[int, ...]]] = {
     "pneutouch sweep, atlas": (_swept, (1, 10, 100, 1000, 10_000, 100_000)),
     "loop of predict, atlas": (_looped, (1, 10, 100, 1000)),
-    "pneutouch sweep, solid": (_swept, (1, 8, 64)),
-    "loop of predict, solid": (_looped, (1, 8, 64)),
+    "pneutouch sweep, solid": (_swept, (1, 10, 100)),
+    "loop of predict, solid": (_looped, (1, 10, 100)),
     "array operations, atlas": (_arrays, (1, 10, 100, 1000)),
 }
 """Ways to predict many designs, and the numbers of designs for which each is timed."""
