@@ -70,8 +70,8 @@ def test_a_fitted_dead_volume_is_one_that_a_design_may_have(library):
 
 
 def test_a_sensor_outside_the_atlas_is_refused(library):
-    thick = DESIGNED.replace(wall_thickness=4.0)
-    with pytest.raises(InputError, match=r"the atlas does not cover this sensor: wall 0\.432 R0"):
+    thick = DESIGNED.replace(wall_thickness=5.5)
+    with pytest.raises(InputError, match=r"the atlas does not cover this sensor: wall 0\.595 R0"):
         fit(Observations(exact(DESIGNED, (0.0,))), thick, chosen(library, "modulus"))
 
 
