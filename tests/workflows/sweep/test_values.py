@@ -95,7 +95,12 @@ def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, librar
         words = [f"membrane.material={resin}", f"membrane.wall_thickness_mm={wall}", "pneumatics.dead_volume_mL=0.3"]
         document = plain(predicted(evaluated("paper-dome", *words, model=model)))
         figures = {"membrane": 0.0, "atlas": TWELVE_DIGITS, "solid": NINE_DIGITS}[model]
-        agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document, figures, SIX_DIGITS if figures else 0.0)
+        agrees(
+            data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall),
+            document,
+            figures,
+            SIX_DIGITS if figures else 0.0,
+        )
 
 
 def test_designs_that_share_their_sources_have_predict_s_intervals_whatever_their_gas(evaluated, library, tmp_path):
