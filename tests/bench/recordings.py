@@ -168,6 +168,9 @@ READ = {
     "a peak after stairs": Recording([*stairs(back=True), (7.5, DEEP), (7.5, CLEAR), (2.0, CLEAR)], "steps", depths),
     "overshoot": Recording(steps(overshoot=0.12), "steps", depths),
     "short hold": Recording([(2.0, CLEAR), (7.5, DEEP), (2.0, DEEP), (7.5, CLEAR), (2.0, CLEAR)]),
+    "long hold after a short rest": Recording(
+        [(1.5, CLEAR), (0.5, DEEP), (400.0, DEEP), (0.5, CLEAR), (1.5, CLEAR)], "relaxation"
+    ),
     "hold of ten seconds": Recording(
         [(3.0, CLEAR), (1.5, DEEP), (10.0, DEEP), (1.5, CLEAR), (3.0, CLEAR)], "relaxation"
     ),
