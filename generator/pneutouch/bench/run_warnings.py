@@ -284,7 +284,7 @@ def _behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
     return lag
 
 
-_KEPT, _GOES_ON, _GREAT, _TURNED, _FAST = 0.6, 0.75, 0.02, 0.003, 0.3
+_KEPT, _GOES_ON, _GREAT, _TURNED, _FAST = 0.6, 0.75, 0.015, 0.003, 0.3
 """Share of the blocks that repeat the one before, and of another channel's way that it makes meanwhile, from which on a
 channel is refreshed seldom; steps of the travel, as a share of its span, that are too great for figures over it; shares
 of its span by which a channel leaves its straight line between refreshes where the plate turns, and that the other may
