@@ -1,5 +1,5 @@
 // Jobs of the studio: started, watched, cancelled; and files given to it.
-import { post, send } from "./requests.js";
+import { post, send, Stopped } from "./requests.js";
 
 const PAUSE = 300;
 
@@ -74,4 +74,47 @@ export async function upload(file) {
   const content = await answer.json();
   if (answer.status !== 200) throw new Failed(content.problems);
   return content.upload;
+}
+
+/** A page with one job at a time: its status, progress, cancelling and failure; `impossible` is said where it fails. */
+export class JobPage {
+  constructor(impossible) {
+    Object.assign(this, { impossible, job: null });
+  }
+
+  report(words, busy = false) {
+    this.status.textContent = words;
+    this.status.classList.toggle("busy", busy);
+  }
+
+  running(job) {
+    this.job = job;
+    this.begin.disabled = Boolean(job);
+    this.under.hidden = !job;
+    // On a narrow screen the results are below the form.
+    if (job) this.under.scrollIntoView({ block: "nearest" });
+    this.results.classList.toggle("stale", Boolean(job));
+  }
+
+  moved(progress, words) {
+    if (!progress.total) return;
+    Object.assign(this.progress, { max: progress.total, value: progress.done });
+    this.report(words(progress), true);
+  }
+
+  async cancel() {
+    this.report("Cancelling.", true);
+    await this.job?.cancel();
+  }
+
+  failed(error) {
+    if (!(error instanceof Failed)) {
+      this.report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
+      if (!(error instanceof Stopped)) throw error;
+      return;
+    }
+    this.problem(error.problems);
+    this.report(this.impossible);
+    this.root.querySelector(".faulty input, .faulty select, .faulty textarea")?.focus();
+  }
 }

@@ -1,10 +1,9 @@
 // The area Map: the design's figures over two of its fields, and the design as a point that can be moved there.
 import { element, short } from "./dom.js";
 import { Fields, untyped } from "./fields.js";
-import { Failed, Job } from "./jobs.js";
+import { Job, JobPage } from "./jobs.js";
 import { at, MapPicture, missing, swatch } from "./mapped.js";
 import { Point } from "./point.js";
-import { Stopped } from "./requests.js";
 
 const PRESSURES = "pneumatics.driving_pressures_kPa";
 const FIELDS = [
@@ -33,9 +32,10 @@ function groups(label) {
   return [{ name: "map", fields: [...Object.entries(AXES).flatMap(([letter, [words]]) => axis(letter, words)), pressure] }];
 }
 
-class DesignMap {
+class DesignMap extends JobPage {
   constructor(root, page) {
-    Object.assign(this, { root, page, job: null, map: null, own: new Set(), figure: "sensitivity" });
+    super("The map cannot be computed.");
+    Object.assign(this, { root, page, map: null, own: new Set(), figure: "sensitivity" });
     this.values = Object.fromEntries(Object.entries(AXES).map(([letter, [, name]]) => [`${letter}.field`, name]));
     this.fields = new Fields(groups("Driving pressure"), (name, text) => this.changed(name, text));
     this.status = element("p", { class: "status", role: "status", "aria-live": "polite" });
@@ -142,25 +142,6 @@ class DesignMap {
     this.fields.fields.get("map.pressure_kPa").row.hidden = Object.keys(AXES).some((letter) => this.values[`${letter}.field`] === PRESSURES);
   }
 
-  report(words, busy = false) {
-    this.status.textContent = words;
-    this.status.classList.toggle("busy", busy);
-  }
-
-  running(job) {
-    this.job = job;
-    this.begin.disabled = Boolean(job);
-    this.under.hidden = !job;
-    if (job) this.under.scrollIntoView({ block: "nearest" });
-    this.results.classList.toggle("stale", Boolean(job));
-  }
-
-  moved({ done, total, what }) {
-    if (!total) return;
-    Object.assign(this.progress, { max: total, value: done });
-    this.report(`${done} of ${total} ${what}.`, true);
-  }
-
   async compute(event) {
     event.preventDefault();
     if (this.job) return;
@@ -168,7 +149,7 @@ class DesignMap {
     this.progress.removeAttribute("value");
     this.report("The map begins.", true);
     const [state, values] = [this.page.state(), { ...this.values }];
-    this.running(new Job("map", { question: state, values }, (progress) => this.moved(progress)));
+    this.running(new Job("map", { question: state, values }, (progress) => this.moved(progress, ({ done, total, what }) => `${done} of ${total} ${what}.`)));
     try {
       const done = await this.job.done;
       if (done) this.answered({ ...done.content, number: done.job, state, at: values["map.pressure_kPa"] });
@@ -179,22 +160,6 @@ class DesignMap {
       this.running(null);
       this.shown();
     }
-  }
-
-  async cancel() {
-    this.report("Cancelling.", true);
-    await this.job?.cancel();
-  }
-
-  failed(error) {
-    if (!(error instanceof Failed)) {
-      this.report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
-      if (!(error instanceof Stopped)) throw error;
-      return;
-    }
-    this.problem(error.problems);
-    this.report("The map cannot be computed.");
-    this.root.querySelector(".faulty input, .faulty select")?.focus();
   }
 
   problem(problems) {

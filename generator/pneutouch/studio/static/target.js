@@ -2,8 +2,8 @@
 import { Candidates } from "./candidates.js";
 import { element } from "./dom.js";
 import { Fields, untyped } from "./fields.js";
-import { Failed, Job } from "./jobs.js";
-import { send, Stopped } from "./requests.js";
+import { Job, JobPage } from "./jobs.js";
+import { send } from "./requests.js";
 
 const MAIN = [
   "target.sensitivity_kPa_per_N",
@@ -19,9 +19,10 @@ const MAIN = [
 /** What stands in place of a value that is left out. */
 const LEFT_OUT = { "target.fits": "finger:20", "setting.profile": "that of the base", "setting.base": "the default design" };
 
-class Target {
+class Target extends JobPage {
   constructor(root, page, declared) {
-    Object.assign(this, { root, page, values: {}, example: declared.example, job: null });
+    super("The target cannot be searched for.");
+    Object.assign(this, { root, page, values: {}, example: declared.example });
     this.fields = new Fields(declared.groups, (name, text) => this.changed(name, text));
     this.status = element("p", { class: "status", role: "status", "aria-live": "polite" });
     this.progress = element("progress", { max: 1, value: 0, "aria-label": "Progress of the search" });
@@ -40,7 +41,7 @@ class Target {
   }
 
   form() {
-    this.find = element("button", { type: "submit", class: "first" }, "Find designs");
+    this.begin = element("button", { type: "submit", class: "first" }, "Find designs");
     const others = [
       element("button", { type: "button", onclick: () => this.take({ ...this.example }) }, "Example"),
       element("button", { type: "button", onclick: () => this.take({}) }, "Clear"),
@@ -54,7 +55,7 @@ class Target {
       { "aria-label": "Target", autocomplete: "off", novalidate: true, onsubmit: search },
       ...this.fields.rows(MAIN),
       // A field keeps the focus while a button is pressed: its help would go, and the button move from under the pointer.
-      element("div", { class: "submit", onmousedown: (event) => event.preventDefault() }, this.find, ...others),
+      element("div", { class: "submit", onmousedown: (event) => event.preventDefault() }, this.begin, ...others),
     );
   }
 
@@ -92,32 +93,12 @@ class Target {
     if (![...input.options].some((option) => option.value === base)) input.append(element("option", { value: base }, base));
   }
 
-  report(words, busy = false) {
-    this.status.textContent = words;
-    this.status.classList.toggle("busy", busy);
-  }
-
-  running(job) {
-    this.job = job;
-    this.find.disabled = Boolean(job);
-    this.under.hidden = !job;
-    // On a narrow screen the results are below the form.
-    if (job) this.under.scrollIntoView({ block: "nearest" });
-    this.results.classList.toggle("stale", Boolean(job));
-  }
-
-  moved({ done, total, what }) {
-    if (!total) return;
-    Object.assign(this.progress, { max: total, value: done });
-    this.report(`Step ${done + 1} of ${total}: ${what}.`, true);
-  }
-
   async search() {
     if (this.job) return;
     this.problem([]);
     this.progress.removeAttribute("value");
     this.report("The search begins.", true);
-    this.running(new Job("select", { base: this.page.state().base, values: this.values }, (progress) => this.moved(progress)));
+    this.running(new Job("select", { base: this.page.state().base, values: this.values }, (progress) => this.moved(progress, ({ done, total, what }) => `Step ${done + 1} of ${total}: ${what}.`)));
     try {
       const done = await this.job.done;
       if (done) this.answered(done.content);
@@ -129,25 +110,9 @@ class Target {
     }
   }
 
-  async cancel() {
-    this.report("Cancelling.", true);
-    await this.job?.cancel();
-  }
-
   answered(content) {
     this.candidates.show(content);
     this.report(`${content.headline.charAt(0).toUpperCase()}${content.headline.slice(1)}.`);
-  }
-
-  failed(error) {
-    if (!(error instanceof Failed)) {
-      this.report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
-      if (!(error instanceof Stopped)) throw error;
-      return;
-    }
-    this.problem(error.problems);
-    this.report("The target cannot be searched for.");
-    this.root.querySelector(".faulty input, .faulty select, .faulty textarea")?.focus();
   }
 
   problem(problems) {
