@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import pytest
 
 from pneutouch.errors import ComputationError, InputError
-from pneutouch.workflows.sweep import dataset, plan_of_file, sweep
+from pneutouch.workflows.sweep import dataset, execute, plan_of_file, sweep, work
 from pneutouch.workflows.sweep.dataset import stored_dataset, table_rows
 from tests.refusals import refused
 from tests.workflows.sweep.conftest import ALONE, ended, held, names, resumed, six, small
@@ -74,6 +76,45 @@ def test_a_dataset_written_and_read_in_parts_is_the_whole_one(states, library, t
         sweep(plan, parts, ALONE, library=library)
         assert parts.read_bytes() == whole.read_bytes()
         assert list(table_rows(stored_dataset(parts))) == rows
+
+
+def test_a_title_of_zeros_is_no_place_for_the_hash(library, tmp_path):
+    (tmp_path / "zeros.toml").write_text(f'[document]\ntitle = "{"0" * 64}"\n')
+    plan, out = small(design=str(tmp_path / "zeros.toml")), tmp_path / "sweep.nc"
+    sweep(plan, out, ALONE, library=library)
+    assert "0" * 64 in stored_dataset(out).attrs["base_design_content"]
+    assert sweep(plan, out, ALONE, library=library).computed == 0
+
+
+def test_memory_for_a_dataset_does_not_grow_with_its_points(library, tmp_path, monkeypatch):
+    """Three times the points, with the records of some: the peak of what Python allocates is that of a few parts."""
+    base = sweep_records(library, tmp_path)
+    peaks = []
+
+    def repeated(machines, folder, points):
+        for chunk in work.chunks(points.study, points.missing):
+            yield [{**base[point.index % len(base)], "point": point.index} for point in chunk.points]
+
+    def measured(points, journal, path):
+        tracemalloc.start()
+        dataset.write_dataset(points, journal, path)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+
+    monkeypatch.setattr(execute, "_batches", repeated)
+    monkeypatch.setattr(execute, "write_dataset", measured)
+    monkeypatch.setattr(dataset, "_STATES", 400)
+    for count in (3000, 9000):
+        plan = small([f"membrane.wall_thickness_mm=1:1.5:{count}"])
+        sweep(plan, tmp_path / f"{count}.nc", ALONE, library=library)
+    assert peaks[1] < 1.2 * peaks[0]
+
+
+def sweep_records(library, folder):
+    """Records of a few points, as a sweep keeps them."""
+    found = work.study(small(["membrane.wall_thickness_mm=1:1.5:10"]), library)
+    work.unpack(found.files, folder / "inputs")
+    return [record for chunk in work.chunks(found, range(10)) for record in work.compute(chunk, folder / "inputs")]
 
 
 def test_a_journal_that_changes_while_a_dataset_is_written_is_no_result(single, library, tmp_path):

@@ -226,6 +226,8 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
 def _attributes(points: FinishedPoints) -> dict[str, str]:
     study, plan = points.study, points.study.plan
     return {
+        # Before all texts of a user, which may hold anything and be of any length.
+        _CONTENT_HASH: _UNHASHED.decode(),
         KEY: format_of("dataset"),
         "title": f"pneutouch sweep {plan.name}",
         "pneutouch_version": __version__,
@@ -236,7 +238,6 @@ def _attributes(points: FinishedPoints) -> dict[str, str]:
         "set_for_all_points": json.dumps(plan.settings, sort_keys=True, ensure_ascii=False),
         "input_hash": study.fingerprint,
         "error_estimate": "\n".join(sorted(filter(None, points.bases))) or "no point was predicted",
-        _CONTENT_HASH: _UNHASHED.decode(),
     }
 
 
