@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics.atlas import respond as respond_module
-from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, SENSITIVITY, neighbourhood
+from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, SENSITIVITY, log_figures, moved, neighbourhood
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -76,6 +76,18 @@ def test_neither_noise_nor_curvature_matters_at_the_step(library):
         for other in (wide, narrow):
             assert other == pytest.approx(chosen, abs=0.04)
             assert combined(sources, batch, other) == pytest.approx(whole, rel=0.02)
+
+
+def test_a_slope_over_the_spread_has_the_sign_of_the_change_over_it():
+    """Signs count where one source moves several inputs. A modulus known to a third bends the sensitivity."""
+    batch = batch_of(PAPER, [0.0, 0.012])
+    standard = np.zeros((len(INPUTS), len(FIGURES), len(batch)))
+    standard[MU] = 0.3
+    found = derivatives(batch, standard, np.full((len(INPUTS), len(batch)), 2.0))
+    more, less = (log_figures(moved(batch, INPUTS[MU], np.full(2, sign * 0.3 * 2.0**0.5))) for sign in (1.0, -1.0))
+    bent = found.slopes[MU] != found.local[MU]
+    assert bent.sum() >= 3
+    assert (np.sign(found.slopes[MU]) == np.sign(more - less))[bent].all()
 
 
 def test_at_the_edge_of_the_box_the_neighbourhood_is_the_same_atlas():
