@@ -217,8 +217,8 @@ def sweep(
     """Predict every combination of values of a design's fields, given as lists or as ``{"from", "to", "count"}``.
 
     A field with a single value has it in all designs. Without ``model`` the solid answers, and off the axis the model
-    harmonic. ``out`` (a netCDF file) keeps the dataset, and the progress of a sweep that is interrupted. Raises
-    InputError, and ComputationError where it stopped; Ctrl-C interrupts it.
+    harmonic. ``out`` (a netCDF file) keeps the dataset, and the progress of a sweep that is interrupted. More than ten
+    million designs need ``yes``. Raises InputError, and ComputationError where it stopped; Ctrl-C interrupts it.
     """
     import xarray
 
