@@ -52,6 +52,11 @@ def enumerated(words: Sequence[str]) -> str:
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
+def held_by(regulated: bool, sealed: bool) -> str:
+    """What holds an inflated state before contact, in words."""
+    return " or ".join(["regulator"] * regulated + ["syringe"] * sealed) or "nothing"
+
+
 def counted(count: int, one: str, many: str = "") -> str:
     """A count with its noun: ``1 design``, ``2 designs``; ``many`` is the plural if it is not ``one`` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"

@@ -38,9 +38,10 @@ def shape(pole_stretch: float, pressure: float) -> tuple[float, float]:
 
 
 def inflated(pole_stretch: float) -> tuple[float, float]:
-    """Pressure p R0/(mu t0) and height h/R0 of the membrane clamped at its base."""
+    """Pressure p R0/(mu t0) and height h/R0 of the membrane clamped at its base, for stretches up to 3."""
     guess = 2 * (pole_stretch**-1 - pole_stretch**-7)
-    pressure = brentq(lambda p: shape(pole_stretch, p)[0] - 1.0, 0.5 * guess, 1.6 * guess, xtol=1e-13)
+    most = 1.6 + 0.55 * max(0.0, pole_stretch - 1.8)
+    pressure = brentq(lambda p: shape(pole_stretch, p)[0] - 1.0, 0.5 * guess, most * guess, xtol=1e-13)
     return pressure, shape(pole_stretch, pressure)[1]
 
 

@@ -95,7 +95,7 @@ SENSITIVE = {"target": {"sensitivity_kPa_per_N": 1.0}}
         (
             DesignFile,
             {"pneumatics": {"driving_pressures_kPa": 5000.0}},
-            "pneumatics.driving_pressures_kPa = 5000.0: must be a list of numbers, from 0 to 1000 kPa",
+            "pneumatics.driving_pressures_kPa = 5000.0: must be a list of numbers, from -100 to 1000 kPa",
         ),
         (
             DesignFile,
@@ -105,7 +105,7 @@ SENSITIVE = {"target": {"sensitivity_kPa_per_N": 1.0}}
         (
             DesignFile,
             {"pneumatics": {"driving_pressures_kPa": 5.0}},
-            "pneumatics.driving_pressures_kPa = 5.0: must be a list of numbers, from 0 to 1000 kPa; write [5.0]",
+            "pneumatics.driving_pressures_kPa = 5.0: must be a list of numbers, from -100 to 1000 kPa; write [5.0]",
         ),
     ],
 )

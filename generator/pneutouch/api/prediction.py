@@ -14,7 +14,7 @@ from pneutouch.api import show
 from pneutouch.api.fields import numbers_of
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
-from pneutouch.evaluation.result import predicted, predicted_in_full
+from pneutouch.evaluation.result import by_model, predicted, predicted_in_full
 from pneutouch.results.prediction import StateRecord
 from pneutouch.results.record import plain
 
@@ -135,6 +135,11 @@ class Prediction(show.Documented):
     def states(self) -> tuple[PredictedState, ...]:
         """The states in order of driving pressure."""
         return tuple(PredictedState(state) for state in predicted(self.evaluation).states)
+
+    @cached_property
+    def filled(self) -> tuple[PredictedState, ...]:
+        """States given by ``pneumatics.injected_volumes_mL`` or ``apex_heights_mm``, also beyond the limit point."""
+        return tuple(PredictedState(state) for state in by_model(self.evaluation.prediction).filled)
 
     def __iter__(self) -> Iterator[PredictedState]:
         return iter(self.states)

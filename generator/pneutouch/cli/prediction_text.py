@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.results.record import SENSITIVITY_KEY
-from pneutouch.wording import SIMULATED, counted, tenths_below
+from pneutouch.wording import SIMULATED, counted, held_by, tenths_below
 
 if TYPE_CHECKING:
     from pneutouch.printability import Finding
@@ -57,6 +57,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         _state_table(prediction.states),
         "",
         *_as_drawn(prediction),
+        *_filled(prediction.filled),
         *_off_axis(prediction.states),
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
@@ -136,18 +137,42 @@ def _as_drawn(prediction: PredictionRecord) -> list[str]:
     head = f"with the {volume_mL:.2f} mL that connector and tube hold as drawn"
     if not prediction.as_drawn:
         return [f"{head}: --set pneumatics.dead_volume_mL={volume_mL:.2f}", ""]
-    rows = [
-        [
-            f"{state.driving_pressure_kPa:g}",
-            _optional(state.sensitivity_kPa_per_N, ".3f"),
-            _optional(state.stiffness_N_per_mm, ".3f"),
-            "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
-            _range_end(state),
-        ]
-        for state in prediction.as_drawn
+    rows = [[f"{state.driving_pressure_kPa:g}", *_figures_cells(state)] for state in prediction.as_drawn]
+    return [f"{head} ({prediction.as_drawn_model}):", table_text(["kPa", *_FIGURES_HEAD], rows), ""]
+
+
+def _filled(states: Sequence[StateRecord]) -> list[str]:
+    """Lines on the states that are given by their filling; empty without any."""
+    if not states:
+        return []
+    rows = []
+    for state in states:
+        held = state.held
+        assert held is not None
+        rows.append(
+            [
+                f"{held.injected_volume_mL:.3f}",
+                f"{state.driving_pressure_kPa:.3f}",
+                f"{state.apex_height_inner_mm:.3f}",
+                f"{state.apex_height_outer_mm:.3f}",
+                held_by(held.stable_regulated, held.stable_sealed),
+                *_figures_cells(state),
+            ]
+        )
+    head = ["mL in", "kPa", "apex in mm", "apex out mm", "held by", *_FIGURES_HEAD]
+    return ["by injected gas, mL at ambient pressure (no interval is known):", table_text(head, rows), ""]
+
+
+_FIGURES_HEAD = ["S kPa/N", "N/mm", "range N", "range ends at"]
+
+
+def _figures_cells(state: StateRecord) -> list[str]:
+    return [
+        _optional(state.sensitivity_kPa_per_N, ".3f"),
+        _optional(state.stiffness_N_per_mm, ".3f"),
+        "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
+        _range_end(state),
     ]
-    columns = ["kPa", "S kPa/N", "N/mm", "range N", "range ends at"]
-    return [f"{head} ({prediction.as_drawn_model}):", table_text(columns, rows), ""]
 
 
 def _range_end(state: StateRecord) -> str:

@@ -242,8 +242,11 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
         prediction.states,
         anywhere=scene.design.contact.anywhere,
     )
-    working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
-    return TuningChart(drawn, low, high, working)
+    working, filled = (
+        tuple((s.driving_pressure / KPA, s.figures.sensitivity) for s in states if s.figures)
+        for states in (prediction.states, prediction.filled)
+    )
+    return TuningChart(drawn, low, high, dict(working), filled_kPa_per_N=filled)
 
 
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:

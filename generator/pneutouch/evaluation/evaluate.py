@@ -20,10 +20,11 @@ from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Filling
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.read import Changes
-from pneutouch.units import KPA
+from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
@@ -133,7 +134,9 @@ class Evaluation:
         plain = sensor.wall.law is None or sensor.protocol.other_contact is not None
         try:
             pressures = [state.driving_pressure for state in self.prediction.states]
-            return predict(self.scene.name, sensor, pressures, model="atlas" if plain else "solid")
+            return predict(
+                self.scene.name, sensor, pressures, model="atlas" if plain and pressures[0] >= 0.0 else "solid"
+            )
         except InputError:
             return None
 
@@ -236,7 +239,10 @@ def evaluate_drawn(
 ) -> Evaluation:
     """Predict a drawn scene; ``answers``: results already computed, by model. Raises InputError if it cannot work."""
     scene, assembly, sensor, options, aged = drawn
-    pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
+    pneumatics = scene.design.pneumatics
+    pressures = [p * KPA for p in pneumatics.driving_pressures_kPa]
+    fillings = [Filling("injected", v * ML) for v in pneumatics.injected_volumes_mL or ()]
+    fillings += [Filling("apex", h) for h in pneumatics.apex_heights_mm or ()]
     try:
         prediction = predict(
             scene.name,
@@ -246,11 +252,12 @@ def evaluate_drawn(
             closure=options.closure,
             tolerance=options.tolerance,
             answers=answers,
+            fillings=fillings,
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     except InputError as error:
-        if error.file is None and (error.key or "").startswith("contact."):
+        if error.file is None and (error.key or "").startswith(("contact.", "pneumatics.")):
             error.file = scene.where
         raise
     known, more = None, [*aged]
@@ -335,7 +342,9 @@ def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
         error.pressure,
         error.limit,
         "beyond the limit point, where the dome snaps; with this resin, wall and radius it must be at most "
-        f"{error.limit / KPA:.2f} kPa",
+        f"{error.limit / KPA:.2f} kPa"
+        if error.pressure > 0.0
+        else f"the dome buckles before; it must be at least {math.ceil(100.0 * error.limit / KPA) / 100.0:.2f} kPa",
         file=scene.where,
         key=f"pneumatics.driving_pressures_kPa[{k}]",
         value=pressures_kPa[k],

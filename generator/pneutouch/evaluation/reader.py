@@ -87,7 +87,7 @@ class ReaderGrid:
 def reader_grid(evaluation: Evaluation) -> ReaderGrid:
     """Tabulate a design's sensor. Raises ComputationError if a press has no range, InputError as `predict` does."""
     sensor, options = evaluation.sensor, evaluation.options
-    set_to = [state.driving_pressure for state in evaluation.prediction.states]
+    set_to = [pressure_kPa * KPA for pressure_kPa in evaluation.scene.tested_kPa]
     rows, computed, low, high = _driving_pressures(evaluation, min(set_to), max(set_to))
     computed_rows = [float(p) for p in rows[computed:]]
     prediction = predict(

@@ -27,6 +27,8 @@ def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Senso
     why = unknown(sensor, material, prediction.model)
     if why is not None:
         return why
+    if prediction.states[0].driving_pressure < 0.0:
+        return "a driving pressure is below ambient"
     from pneutouch.mechanics.viscous.describe import chosen_depth, describe
 
     depth = chosen_depth(sensor, [state.range_end for state in prediction.states])

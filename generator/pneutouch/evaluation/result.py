@@ -22,6 +22,7 @@ from pneutouch.results.prediction import (
     ByMixingCurve,
     Curve,
     EventRecord,
+    HeldRecord,
     InflationRecord,
     LimitPointRecord,
     LimitsRecord,
@@ -33,6 +34,7 @@ from pneutouch.results.prediction import (
     ShearRecord,
     StateRecord,
 )
+from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
 
@@ -117,8 +119,15 @@ def by_model(prediction: SensorPrediction, *, curves: bool = True) -> Prediction
         ),
         states=tuple(_state(state, curves=curves) for state in prediction.states),
         assumptions=prediction.assumptions,
+        filled=tuple(
+            replace(_state(state, curves=curves), uncertainty=UncertaintyRecord(unknown=_OF_FILLED))
+            for state in prediction.filled
+        ),
     )
     return rounded(record, MODEL_DIGITS, NOTHING) if curves else record
+
+
+_OF_FILLED = "the budget is of states at a driving pressure"
 
 
 def _state(state: SensorState, *, curves: bool) -> StateRecord:
@@ -140,6 +149,7 @@ def _state(state: SensorState, *, curves: bool) -> StateRecord:
         curve=Curve(*[()] * 7) if without else _curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
         off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),
+        held=None if state.held is None else HeldRecord(state.held.injected / ML, *state.held[1:]),
     )
 
 

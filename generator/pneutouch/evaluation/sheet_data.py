@@ -128,6 +128,7 @@ class TuningChart:
         others: Designs to compare with.
         published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
         caption: Note below the chart on what the curves leave out; empty for no note.
+        filled_kPa_per_N: Pressures (kPa) and sensitivities of the states given by their filling, which pass the limit.
     """
 
     chosen: SensitivityCurve
@@ -137,6 +138,7 @@ class TuningChart:
     others: tuple[SensitivityCurve, ...] = ()
     published_kPa_per_N: tuple[tuple[float, float], ...] = ()
     caption: str = ""
+    filled_kPa_per_N: tuple[tuple[float, float], ...] = ()
 
 
 class ChartPoint(NamedTuple):

@@ -67,6 +67,8 @@ def notes_on(sensor: Sensor) -> tuple[str, ...]:
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
 
+_VACUUM = "the derivatives are the atlas's, which has no states below ambient pressure"
+
 DIGITS = 6
 """Significant digits of an uncertainty: more than are meaningful, fewer than differ between processors."""
 
@@ -193,6 +195,10 @@ def uncertainties(
     ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
     states, model = prediction.states, prediction.model
+    if any(state.driving_pressure < 0.0 for state in states):
+        blown = tuple(state for state in states if state.driving_pressure >= 0.0)
+        known = iter(uncertainties(replace(prediction, states=blown), sensor, scene, resins, samples) if blown else ())
+        return tuple(UncertaintyRecord(unknown=_VACUUM) if s.driving_pressure < 0.0 else next(known) for s in states)
     notes_of_wall, fitted, sensor = notes_on(sensor), sensor.wall.fitted, sensor.even
     why = why_unknown(sensor, model)
     if why is not None:

@@ -31,7 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, bisected
-from pneutouch.errors import BeyondLimitError, ComputationError
+from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.prediction import LimitPoint, Limits
 from pneutouch.mechanics.sensor import Sensor
 
@@ -83,7 +83,7 @@ def relative_height(
 ) -> Array:
     """Relative heights h/R0 at driving pressures ``p`` (MPa, from 0), on the rising or the ``falling`` branch.
 
-    Raises BeyondLimitError beyond the limit point, and ComputationError for a negative pressure.
+    Raises BeyondLimitError beyond the limit point, and InputError for a negative pressure.
     """
     target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
     if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)):
@@ -94,7 +94,8 @@ def relative_height(
         )
         raise BeyondLimitError(float(np.max(target)) * scale, LIMIT_PRESSURE * scale, text)
     if np.any(target < 0):
-        raise ComputationError("the membrane theory does not cover suction; give driving pressures from 0")
+        problem = "the membrane theory does not cover suction"
+        raise InputError(problem, key="model", value="membrane", remedy="take `model` solid")
     if falling:
         low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
         return np.exp(bisected(lambda s: target - relative_pressure(np.exp(s)), low, high))

@@ -1,6 +1,6 @@
 """Prediction of a sensor by one of the models, and the assumptions that every prediction states."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -17,8 +17,8 @@ from pneutouch.mechanics.models.choice import (
     usual_model,
 )
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel
-from pneutouch.mechanics.prediction import SensorPrediction
-from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
+from pneutouch.mechanics.prediction import SensorPrediction, SensorState
+from pneutouch.mechanics.sensor import Filling, IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
 
 _CLAMPED_BASE = "rim clamped at the base plane, as in the paper"
@@ -41,8 +41,10 @@ def predict(
     closure: str = "variational",
     tolerance: float = DEFAULT_TOLERANCE,
     answers: Mapping[str, Answered] = MappingProxyType({}),
+    fillings: Sequence[Filling] = (),
 ) -> SensorPrediction:
-    """Predict a sensor at ascending driving pressures (MPa); ``design`` is its name, ``closure`` the membrane model's.
+    """Predict a sensor at ascending driving pressures (MPa) and at ``fillings``; ``design`` is its name and ``closure``
+    the membrane model's.
 
     ``model`` is a name of `MODEL_CHOICES` or ``usual``. ``auto`` takes the cheapest model whose stated error meets the
     ``tolerance`` (a fraction) and gives the reason. ``answers`` holds answers already computed in a batch of sensors,
@@ -71,6 +73,10 @@ def predict(
     held = _CLAMPED_FLANGE if chosen.holds_flange and sensor.dome.flange is not None else _CLAMPED_BASE
     dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA
     gas = f"dead volume {dead / ML:.4g} mL, ambient pressure {ambient_kPa:g} kPa"
+    filled: tuple[SensorState, ...] | None = ()
+    if fillings:
+        filled = chosen.closed(closure).filled(sensor, fillings)
+        filled = model_named(usual_model(sensor)).filled(sensor, fillings) if filled is None else filled
     return SensorPrediction(
         design=design,
         model=chosen.name,
@@ -81,6 +87,7 @@ def predict(
         dead_volume=dead,
         inflation=result.inflation,
         states=tuple(state.corrected(correction) for state in result.states),
+        filled=tuple(state.corrected(correction) for state in filled or ()),
         assumptions=(*chosen.assumptions(sensor), held, contact_words(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
     )
 

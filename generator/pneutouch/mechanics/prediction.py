@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event
@@ -99,12 +99,22 @@ class Limits:
         return [(name, value) for name, value in pairs if value is not None]
 
 
+class Held(NamedTuple):
+    """A state given by its `Filling`: the gas ``injected`` into the vented sensor, mm3 at ambient pressure, and whether
+    the free dome is stable at a ``regulated`` pressure and with its gas ``sealed`` in, as by a syringe."""
+
+    injected: float
+    regulated: bool
+    sealed: bool
+
+
 @dataclass(frozen=True, slots=True)
 class SensorState:
     """The inflated dome at one driving pressure, and its loading curve: arrays of one length (mm, N, MPa).
 
     ``figures`` hold from first contact to ``range_end`` (mm of indentation); None if they are undetermined. ``face``
-    returns the pressed outer wall for drawing. A field is None or empty if the model does not give it.
+    returns the pressed outer wall for drawing; ``held`` is that of a state given by its filling. A field is None or
+    empty if the model does not give it.
     """
 
     driving_pressure: float
@@ -124,6 +134,7 @@ class SensorState:
     walls: WallPath | None = None
     beyond_axis: OffAxisCurve | None = None
     face: Callable[[], PressedFace] | None = None
+    held: Held | None = None
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
@@ -175,7 +186,8 @@ class ModelResult:
 
 @dataclass(frozen=True, slots=True)
 class SensorPrediction:
-    """All results of one model for one sensor; ``dead_volume`` in mm3, ``closure`` None but for the membrane model."""
+    """All results of one model for one sensor; ``dead_volume`` in mm3, ``closure`` None but for the membrane model;
+    ``filled``: states given by their filling, in place of a driving pressure."""
 
     design: str
     model: str
@@ -187,6 +199,7 @@ class SensorPrediction:
     inflation: InflationCurve
     states: tuple[SensorState, ...]
     assumptions: tuple[str, ...]
+    filled: tuple[SensorState, ...] = ()
 
     def __repr__(self) -> str:
         return f"SensorPrediction({self.design!r}, model {self.model}, {len(self.states)} states)"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -97,6 +97,20 @@ class GasCircuit:
     ambient_pressure: float
     dead_volume: float
     gauge_limit: float
+
+    def injected(self, pressure: Any, volume: Any, at_rest: float) -> Any:
+        """Gas that fills a vented cavity of volume ``at_rest`` to a gauge pressure (MPa) and volume, as mm3 at ambient
+        pressure; isothermal (Boyle)."""
+        absolute = pressure + self.ambient_pressure
+        return absolute * (volume + self.dead_volume) / self.ambient_pressure - at_rest - self.dead_volume
+
+
+class Filling(NamedTuple):
+    """What fixes an inflated state in place of its pressure: the gas ``injected`` into the vented sensor, mm3 at
+    ambient pressure, or the height of the ``apex`` outside, mm. Either is unique where one pressure has two states."""
+
+    kind: Literal["injected", "apex"]
+    value: float
 
 
 @dataclass(frozen=True, slots=True)

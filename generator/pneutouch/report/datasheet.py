@@ -121,6 +121,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
         Text(prose.PERFORMANCE, "muted"),
         Items(sheet_tables.quiet_events(sheet)),
         *sheet_tables.as_drawn(sheet),
+        *sheet_tables.filled(sheet),
         *conditions.off_axis(sheet.prediction.states),
         Items(errors),
         Plots(_charts("performance", sheet)),

@@ -68,6 +68,11 @@ def tuning(sheet: SheetData) -> Plot | None:
     words = (
         "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where "
         f"that is above), by the atlas{ratio}, with its k = 2 interval (grey); circles: the predicted states."
+        + (
+            " Squares: states by injected gas or height, on to beyond the limit point."
+            if sheet.prediction.filled
+            else ""
+        )
     )
     return Plot(drawn_svg(tuning_panel(sheet.tuning)), words)
 

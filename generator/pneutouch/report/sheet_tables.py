@@ -13,6 +13,7 @@ from pneutouch.report.conditions import NOT_TESTED, gauge_range, gauge_volume
 from pneutouch.report.numbers import DASH
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.units import KPA, ML
+from pneutouch.wording import held_by
 
 _PERFORMANCE = (
     "Driving\nkPa",
@@ -102,8 +103,28 @@ def as_drawn(sheet: SheetData) -> list[SheetBlock]:
     ]
     volume_mL, model = sheet.assembly.drawn_volume / ML, sheet.as_drawn.model
     title = f"With the {volume_mL:.2f} mL that connector and tube hold as drawn ({model})"
-    head = ("Driving\nkPa", "Sensitivity\nkPa/N", "Stiffness\nN/mm", "Force range\nN", "Range ends at")
-    return section(title, SheetTable(rows, head, numeric=range(4), small=True), level=3)
+    return section(title, SheetTable(rows, ("Driving\nkPa", *_PRESSED), numeric=range(4), small=True), level=3)
+
+
+def filled(sheet: SheetData) -> list[SheetBlock]:
+    """Figures of the states given by their filling, and what holds them before contact; empty if there are none."""
+    rows = [
+        [
+            f"{state.held.injected / ML:.3g}",
+            f"{state.driving_pressure / KPA:.2f}",
+            f"{state.apex_outer:.2f}",
+            held_by(*state.held[1:]),
+            *(cell(state) for cell in (_sensitivity, _stiffness, _range, _ends)),
+        ]
+        for state in sheet.prediction.filled
+        if state.held is not None
+    ]
+    head = ("Injected\nmL", "Pressure\nkPa", "Apex outside\nmm", "Held by", *_PRESSED)
+    title = "By injected gas (mL at ambient pressure) or height; no intervals are known"
+    return section(title, SheetTable(rows, head, numeric=(0, 1, 2, 4, 5, 6), small=True), level=3) if rows else []
+
+
+_PRESSED = "Sensitivity\nkPa/N", "Stiffness\nN/mm", "Force range\nN", "Range ends at"
 
 
 def ratings(sheet: SheetData) -> list[list[str]]:

@@ -103,6 +103,11 @@ def tuning_panel(tuning: TuningChart) -> Panel:
     lines.append(
         PlotLine(list(working_kPa_per_N), list(working_kPa_per_N.values()), dashes="", marker="o", size=4.5, over=5)
     )
+    if tuning.filled_kPa_per_N:
+        x, y = zip(*tuning.filled_kPa_per_N, strict=True)
+        lines.append(
+            PlotLine(x, y, "by injected gas or height", width=1.0, dashes=LINES[2], marker="s", size=4.0, over=4)
+        )
     lines += published_points(dict(tuning.published_kPa_per_N))
     last_kPa, value = list(working_kPa_per_N.items())[-1]
     side = -1.0 if last_kPa > 0.5 * max(float(at_kPa[-1]), *working_kPa_per_N) else 1.0

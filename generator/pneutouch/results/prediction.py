@@ -141,6 +141,18 @@ class OffAxisRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class HeldRecord:
+    """Filling of a sensor that is given by its gas or its height, and what holds its state before contact."""
+
+    injected_volume_mL: float
+    """Gas injected into the vented sensor, as a volume at ambient pressure."""
+    stable_regulated: bool
+    """True if a regulator that keeps the pressure holds the state."""
+    stable_sealed: bool
+    """True if gas that is shut in, as by a syringe, holds the state."""
+
+
+@dataclass(frozen=True, slots=True)
 class StateRecord:
     """A sensor at one driving pressure; figures are null where no line can be fitted."""
 
@@ -176,6 +188,8 @@ class StateRecord:
     """Additions of contact off the axis to the curve."""
     uncertainty: UncertaintyRecord | None = None
     """Uncertainty of the figures, or the reason why there is none."""
+    held: HeldRecord | None = None
+    """Filling of a state that is given by it; left out for one at a driving pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -318,6 +332,8 @@ class PredictionRecord:
     """One entry a driving pressure."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""
+    filled: tuple[StateRecord, ...] = ()
+    """States given by injected volume or apex height, which can be beyond the limit point; left out: none."""
     rating: RatingRecord | None = None
     """Rated pressure and what it follows from."""
     contact: Mapping[str, Any] | None = None

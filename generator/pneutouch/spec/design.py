@@ -53,7 +53,9 @@ class Mould(Table):
 
 
 def _within(low: float, high: float, unit: str) -> AfterValidator:
-    def check(values: list[float]) -> list[float]:
+    def check(values: list[float] | None) -> list[float] | None:
+        if values is None:
+            return None
         for index, value in enumerate(values):
             if not low <= value <= high:
                 raise EntryError(f"must be from {low:g} to {high:g} {unit}", index, value)
@@ -150,14 +152,30 @@ class Connector(SparseTable):
 class Pneumatics(SparseTable):
     """[pneumatics]: pressures, tube, gauge and gas volume."""
 
-    left_out = ("gauge",)
+    left_out = ("gauge", "injected_volumes_mL", "apex_heights_mm")
 
-    driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(
+    driving_pressures_kPa: Annotated[list[float], _within(-100, 1000, "kPa")] = numbers(
         [0.0, 5.0, 12.0, 22.0],
         unit="kPa",
+        low=-100,
+        high=1000,
+        help="Gauge pressures before contact at which the sensor is used: the online stiffness. Below 0: a vacuum.",
+    )
+    injected_volumes_mL: Annotated[list[float] | None, _within(-1000, 100000, "mL")] = numbers(
+        None,
+        unit="mL",
+        low=-1000,
+        high=100000,
+        help="Gas that a syringe injects into the vented sensor, as a volume at ambient pressure: further states, also "
+        "beyond the limit point, where one pressure has two; left out: none.",
+    )
+    apex_heights_mm: Annotated[list[float] | None, _within(0, 1000, "mm")] = numbers(
+        None,
+        unit="mm",
         low=0,
         high=1000,
-        help="Gauge pressures before contact at which the sensor is used: the online stiffness.",
+        help="Heights of the inflated dome outside, above the base plane: further states, as by injected_volumes_mL; "
+        "left out: none.",
     )
     ambient_pressure_kPa: float = number(
         101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."

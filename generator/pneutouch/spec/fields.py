@@ -98,7 +98,7 @@ def number(default: float | None, *, unit: str, low: float, high: float, help: s
     return Field(default=default, ge=low, le=high, description=help, json_schema_extra=extra)
 
 
-def numbers(default: list[float], *, unit: str, low: float, high: float, help: str) -> Any:
+def numbers(default: list[float] | None, *, unit: str, low: float, high: float, help: str) -> Any:
     """Declare a list of 1 to 50 numbers; the bounds are declared only, a validator of the field must enforce them."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
     return Field(

@@ -115,7 +115,7 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
 
 def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
     """Raise InputError if the sensor as designed meets a limit at one of the design's driving pressures."""
-    for k, pressure_kPa in enumerate(scene.design.pneumatics.driving_pressures_kPa):
+    for k, pressure_kPa in enumerate(scene.tested_kPa):
         if rating.severity(pressure_kPa * KPA) == "error":
             raise InputError(
                 f"{resin}: {rating.excess(pressure_kPa * KPA)}",

@@ -40,7 +40,7 @@ def driving_pressures_kPa(subject: SimulatedResin, options: RequestedRuns) -> li
         listed = [run for run in options.planned if run.resin == subject.name]
         # An injection begins at ambient pressure whatever the others are driven at.
         given_kPa = list({run.driving_pressure_kPa for run in listed if run.kind != "injection"}) or [0.0]
-    return sorted(subject.scene.design.pneumatics.driving_pressures_kPa if given_kPa is None else given_kPa)
+    return sorted(subject.scene.tested_kPa if given_kPa is None else given_kPa)
 
 
 def sensors_of(resin: str, options: RequestedRuns) -> list[str]:

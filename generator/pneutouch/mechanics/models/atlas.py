@@ -51,6 +51,8 @@ _MEETS_RING = Limitation(
     False,
 )
 
+_VACUUM = Limitation("its tables have no states below ambient pressure", True)
+
 SHALLOW, _LEAST_DEPTH = 0.2, 0.1
 """Range in R0 below which the table may exceed `TABULATION`, and least depth of a press; sensitivities of 300 random
 domes are up to 0.36 % off over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (tests/mechanics/atlas/test_short_ranges.py)."""
@@ -107,15 +109,20 @@ MODEL = AtlasTables()
 
 
 def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answered]:
-    """Answers for sensors with the same number of steps, in one pass."""
-    batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, driving_pressures, strict=True)])
+    """Answers for sensors with the same number of steps, in one pass. Those for a vacuum have a fatal limitation."""
+    blown = [np.maximum(pressures, 0.0) for pressures in driving_pressures]
+    batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, blown, strict=True)])
     passed = run(batch, sensors[0].protocol.steps, shipped(), FIELDS)
     fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
     ends = np.cumsum([len(pressures) for pressures in driving_pressures])
     firsts = ends - [len(pressures) for pressures in driving_pressures]
     free = _FreeCurves.of(passed.press.slices, passed.press.k[firsts])
     rows = zip(sensors, map(range, firsts, ends), zip(*free, strict=True), strict=True)
-    return [_answer(sensor, passed, fields, some, _FreeCurves(*curve)) for sensor, some, curve in rows]
+    found = [_answer(sensor, passed, fields, some, _FreeCurves(*curve)) for sensor, some, curve in rows]
+    return [
+        one._replace(limitation=_VACUUM) if isinstance(one, ModelAnswer) and (pressures < 0.0).any() else one
+        for one, pressures in zip(found, driving_pressures, strict=True)
+    ]
 
 
 def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: _FreeCurves) -> Answered:

@@ -26,8 +26,8 @@ from pneutouch.mechanics.models.solid import (
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, state_at
+from pneutouch.mechanics.sensor import Filling, Sensor
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
@@ -68,6 +68,12 @@ class HarmonicElements(SensorModel):
         """Answers of `harmonic_result`, one sensor at a time."""
         return one_by_one(lambda *one: ModelAnswer(harmonic_result(*one)), sensors, driving_pressures)
 
+    def filled(self, sensor: Sensor, fillings: Sequence[Filling]) -> tuple[SensorState, ...]:
+        """States given by their fillings, inflated by the solid."""
+        from pneutouch.mechanics.models.filling import filled_states
+
+        return filled_states(sensor, fillings, _state)
+
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Errors of the mesh and of the Fourier sums."""
         return discretised(_SUMMARY, OBJECT_DISCRETISATION)
@@ -88,8 +94,7 @@ def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
     return solid_result(sensor, driving_pressures, pressed_state=_state)
 
 
-def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
-    free = state_at(probe.solid, pressure, run)
+def _state(sensor: Sensor, probe: StrainProbe, free: FreeState, pressure: float) -> SensorState:
     press = off_axis_press(sensor, probe, free)
     if sensor.protocol.off_axis is None:
         return _record(sensor, pressure, free, press, press.run(0), 0.0)

@@ -7,8 +7,8 @@ from typing import ClassVar, NamedTuple
 from pneutouch.arrays import Array
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.models.accuracy import NUMERICAL
-from pneutouch.mechanics.prediction import ModelResult
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.prediction import ModelResult, SensorState
+from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 
 
@@ -61,6 +61,10 @@ class SensorModel(ABC):
     @abstractmethod
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions specific to the model, in words."""
+
+    def filled(self, sensor: Sensor, fillings: Sequence[Filling]) -> tuple[SensorState, ...] | None:
+        """States given by their fillings, also beyond the limit point; None: the model has none, the usual one does."""
+        return None
 
     def stated_error(self, sensor: Sensor) -> float:
         """Relative numerical error in sensitivity that the model states for a sensor."""

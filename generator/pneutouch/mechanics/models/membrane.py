@@ -1,11 +1,12 @@
 """The model ``membrane``: the paper's theory for a sensor, inflated (state I) and pressed (state II)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, bisected
+from pneutouch.errors import InputError
 from pneutouch.mechanics.events import Event, range_end
 from pneutouch.mechanics.membrane import (
     LIMIT_HEIGHT,
@@ -21,9 +22,9 @@ from pneutouch.mechanics.membrane import (
     thickness_stretch,
 )
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel, one_by_one
-from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.prediction import Held, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
@@ -70,6 +71,18 @@ class MembraneTheory(SensorModel):
     def closed(self, closure: str) -> SensorModel:
         """The theory with another closure."""
         return MembraneTheory(closure)
+
+    def filled(self, sensor: Sensor, fillings: Sequence[Filling]) -> tuple[SensorState, ...]:
+        """States on the closed form, which goes on to any height. Raises InputError for suction, which it lacks."""
+        at_rest = float(cap_volume(np.array(sensor.dome.inner_radius), sensor.dome.inner_radius))
+        heights = [_filled_height(sensor, one, at_rest) for one in fillings]
+        states = _states(sensor, np.array(heights), self.closure)
+        gas, last = sensor.gas, LIMIT_HEIGHT
+        injected = (gas.injected(s.driving_pressure, s.cavity_volume, at_rest) for s in states)
+        return tuple(
+            replace(s, held=Held(float(v), x < last, _is_sealed(sensor, x)))
+            for s, v, x in zip(states, injected, heights, strict=True)
+        )
 
     def _answer(self, sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
         plain = sensor.wall.law is None and sensor.dome.flange is None
@@ -123,8 +136,16 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not jump when
     an event passes a step.
     """
+    dome, modulus = sensor.dome, sensor.wall.shear_modulus
+    x = relative_height(driving_pressures, dome.inner_radius, dome.wall_thickness, modulus)
+    return _states(sensor, x, closure, driving_pressures)
+
+
+def _states(sensor: Sensor, x: Array, closure: str, driving_pressures: Array | None = None) -> tuple[SensorState, ...]:
+    """States at relative heights ``x`` = h/R0, whose driving pressures are computed if they are None."""
     radius, thickness = sensor.dome.inner_radius, sensor.dome.wall_thickness
-    x = relative_height(driving_pressures, radius, thickness, sensor.wall.shear_modulus)
+    if driving_pressures is None:
+        driving_pressures = pressure(x, radius, thickness, sensor.wall.shear_modulus)
     apex = x * radius
     volume = cap_volume(apex, radius)
     gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.gas.dead_volume, sensor.gas.ambient_pressure)
@@ -156,6 +177,42 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
         )
         for k, p in enumerate(driving_pressures)
     )
+
+
+_HIGHEST = 100.0
+"""Greatest height h/R0 at which a filling is looked for: the wall is stretched 70 times its length there."""
+
+
+def _filled_height(sensor: Sensor, filling: Filling, at_rest: float) -> float:
+    """Height h/R0 at a filling, to 1e-12; the first where the gas is not monotone in the height."""
+    dome, modulus = sensor.dome, sensor.wall.shear_modulus
+
+    def excess(x: Array) -> Array:
+        if filling.kind == "apex":
+            return np.asarray(x * dome.inner_radius + thickness_stretch(x) * dome.wall_thickness - filling.value)
+        driving = pressure(x, dome.inner_radius, dome.wall_thickness, modulus)
+        volume = cap_volume(x * dome.inner_radius, dome.inner_radius)
+        return np.asarray(sensor.gas.injected(driving, volume, at_rest) - filling.value)
+
+    x = np.geomspace(1.0, _HIGHEST, 2000)
+    over = np.flatnonzero(excess(x) >= -_ROUNDING)
+    if not over.size or excess(x[:1])[0] > _ROUNDING:
+        problem = "the membrane theory covers neither suction nor such heights"
+        raise InputError(problem, key="model", value="membrane", remedy="take `model` solid")
+    k = max(int(over[0]), 1)
+    return float(bisected(excess, x[k - 1], x[k]))
+
+
+_ROUNDING = 1e-9
+"""Injected gas (mm3) and height (mm) below which the dome is at rest."""
+
+
+def _is_sealed(sensor: Sensor, x: float) -> bool:
+    """True if the amount of gas rises with the height: shut in, it holds the dome at h/R0 = ``x``."""
+    near = x * np.array([1 - 1e-6, 1 + 1e-6])
+    driving = pressure(near, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus)
+    volume = cap_volume(near * sensor.dome.inner_radius, sensor.dome.inner_radius)
+    return bool(np.diff(sensor.gas.injected(driving, volume, 0.0))[0] > 0.0)
 
 
 def _events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:

@@ -35,7 +35,7 @@ from pneutouch.mechanics.prediction import (
     WallPath,
 )
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.sensor import RigidBase, Sensor
+from pneutouch.mechanics.sensor import Filling, RigidBase, Sensor
 from pneutouch.mechanics.solid.continuation import Guides
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
@@ -75,6 +75,12 @@ class SolidElements(SensorModel):
         """Answers of `solid_result`, one sensor at a time: the paths of each guide those of the next."""
         press = partial(_state, {})
         return one_by_one(lambda *one: ModelAnswer(solid_result(*one, pressed_state=press)), sensors, driving_pressures)
+
+    def filled(self, sensor: Sensor, fillings: Sequence[Filling]) -> tuple[SensorState, ...]:
+        """States given by their fillings: `filled_states`."""
+        from pneutouch.mechanics.models.filling import filled_states
+
+        return filled_states(sensor, fillings, partial(_state, {}))
 
     def stated_error(self, sensor: Sensor) -> float:
         """Relative error of the mesh in sensitivity, which is greater for an object other than a plate."""
@@ -144,6 +150,9 @@ KINDS = {
 """Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 
+PressedState = Callable[[Sensor, StrainProbe, FreeState, float], SensorState]
+"""Presses a free state at its driving pressure (MPa)."""
+
 _Paths = dict[float, Guides]  # Paths of the last two sensors by driving pressure, MPa.
 
 
@@ -153,19 +162,26 @@ def solid_result(
     *,
     cells: int | None = None,
     past_limit: float = _PAST_LIMIT,
-    pressed_state: Callable[[Sensor, StrainProbe, Inflation, float], SensorState] | None = None,
+    pressed_state: PressedState | None = None,
 ) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
     ``cells`` is the number of cells along the arc; None: by wall ratio (docs/background/accuracy.md) and object.
     ``past_limit`` is the multiple of the limit point's volume to which inflation goes on; 1 is enough for the figures.
-    ``pressed_state`` presses at one driving pressure; None: the axisymmetric solid does.
+    ``pressed_state`` presses one free state; None: the axisymmetric solid does.
     Raises BeyondLimitError beyond the limit point, ComputationError if no equilibrium is found.
     """
     probe, run = _inflated(sensor, cells, past_limit)
-    press = pressed_state or partial(_state, {})
-    states = tuple(press(sensor, probe, run, float(p)) for p in driving_pressures)
-    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(probe.solid, run), states)
+    press, lowest = pressed_state or partial(_state, {}), min(driving_pressures, default=0.0)
+    emptied = Inflation([], None, "")
+    if lowest < 0.0:
+        from pneutouch.mechanics.models.filling import emptied_to
+
+        emptied = emptied_to(sensor, probe.solid, lowest)
+    at = driving_pressures.tolist()
+    states = tuple(press(sensor, probe, state_at(probe.solid, p, emptied if p < 0.0 else run), p) for p in at)
+    curve = _inflation(probe.solid, replace(run, states=[*emptied.states[:0:-1], *run.states]))
+    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), curve, states)
 
 
 @lru_cache(maxsize=1)
@@ -183,7 +199,7 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
     sensor = sensor.replace(waves=0)
     probe = solid_probe(sensor)
     run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
-    return tuple(_state({}, sensor, probe, run, float(p)) for p in driving_pressures)
+    return tuple(_state({}, sensor, probe, state_at(probe.solid, p, run), p) for p in driving_pressures.tolist())
 
 
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
@@ -276,9 +292,8 @@ def press_settings(sensor: Sensor) -> PressSettings:
     )
 
 
-def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
-    """State at a driving pressure (MPa); those in ``guides`` at this pressure lead its path, which joins them."""
-    free = state_at(probe.solid, pressure, run)
+def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, free: FreeState, pressure: float) -> SensorState:
+    """State at a driving pressure (MPa), pressed from ``free``; ``guides`` at it lead the path, which joins them."""
     test, press = sensor.protocol, press_settings(sensor)
     pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
     guides[pressure] = [pressed.solved, *guides.get(pressure, ())[:1]]
@@ -329,6 +344,8 @@ def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Arr
     force, rise = np.array([s.force for s in states]), np.array([s.rise for s in states])
     stiffness = np.array([s.stiffness for s in states])
     rate = np.nan_to_num(np.array([s.slope for s in states])) * stiffness
+    if x.size == 1:
+        return np.full(grid.shape, force[0]), np.full(grid.shape, rise[0])
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 

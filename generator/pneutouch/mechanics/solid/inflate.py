@@ -3,6 +3,7 @@
 Also the first contact of a plate or another rigid object with an inflated dome.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -141,20 +142,25 @@ def at_volume(
 
 
 def inflate(
-    solid: SolidModel, to_pressure: float | None = None, past_limit: float = 1.3, largest: float = 30.0
+    solid: SolidModel,
+    to_pressure: float | None = None,
+    past_limit: float = 1.3,
+    largest: float = 30.0,
+    enough: Callable[[FreeState], bool] = lambda state: False,
 ) -> Inflation:
     """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
 
     to_pressure: stop once this gauge pressure (MPa) or the limit point is reached; None: go on to ``past_limit`` times
-    the limit point's volume. largest: multiple of the unloaded volume at which the path ends in any case. Raises
-    NoConvergenceError if the volume steps become too small before a limit point."""
+    the limit point's volume. largest: multiple of the unloaded volume at which the path ends in any case, as it does at
+    the first state that is ``enough``. Raises NoConvergenceError if the volume steps become too small before a limit
+    point."""
     path = [rest_state(solid)]
     rest = path[0].unit.volume
     sign = -1.0 if to_pressure is not None and to_pressure < 0.0 else 1.0
     growth, limit = _FIRST_GROWTH if sign > 0.0 else _EMPTYING, None
     while len(path) < _MAX_STATES:
         last = path[-1]
-        ended = _ended(path, limit, to_pressure, past_limit, largest * rest)
+        ended = "" if enough(last) else _ended(path, limit, to_pressure, past_limit, largest * rest)
         if ended is not None:
             return Inflation(path, limit, ended)
         step = at_volume(solid, path, last.unit.volume * (1.0 + sign * growth))
@@ -194,7 +200,7 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
     middle = before
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
-        middle = _towards(solid, before, after, _slope_root(before, after))
+        middle = towards(solid, before, after, _slope_root(before, after))
         moved = abs(middle.stiffness) * abs(b - a) <= tolerance * (abs(before.stiffness) + abs(after.stiffness)) * a
         if moved or abs(b - a) < tolerance * a:
             return middle
@@ -202,7 +208,7 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
     return middle
 
 
-def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: float) -> FreeState:
+def towards(solid: SolidModel, before: FreeState, after: FreeState, volume: float) -> FreeState:
     """State at a volume (R0^3) between two states, or nearer to ``before`` if that does not converge."""
     start, share = before.unit.volume, 1.0
     while True:

@@ -41,6 +41,11 @@ def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[i
     return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
 
 
+def round_waves(solid: SolidModel, state: SolverState, most: int = MOST_WAVES) -> tuple[int, ...]:
+    """Numbers of waves, 1 to ``most``, to which a state without contact is unstable; empty: it stays round."""
+    return unstable_waves(_variation(solid), state, tuple(range(1, most + 1))) if most else ()
+
+
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
     """Losses of stability of a path from first contact down: the first to one wave, the first to 2 to ``most`` waves.
 

@@ -173,6 +173,12 @@ export function drawSensitivity(answer, pinned) {
     states.map((state) => state.sensitivity_kPa_per_N),
     series("at its driving pressures", colour("ink"), { width: 0 }),
   );
+  const filled = (answer.prediction.filled ?? []).filter((state) => state.sensitivity_kPa_per_N !== null);
+  const upTo = (beyond) => filled.filter((state) => state.held.stable_regulated !== beyond).sort((a, b) => a.driving_pressure_kPa - b.driving_pressure_kPa);
+  for (const [beyond, words] of [[false, "by injected gas"], [true, "by injected gas, beyond the limit"]]) {
+    const some = upTo(beyond);
+    if (some.length) add(some.map((state) => state.driving_pressure_kPa), some.map((state) => state.sensitivity_kPa_per_N), series(words, colour("ink"), { width: 1, dash: beyond ? [2, 4] : [6, 3], points: { show: true, size: 6 } }));
+  }
   const material = answer.drawing.bodies.find((body) => body.role === "membrane").material;
   // The design's own resin is drawn already.
   answer.curves.resins.filter((resin) => !own || !material.startsWith(resin.title)).forEach((resin, k) => {

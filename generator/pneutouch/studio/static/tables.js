@@ -68,7 +68,22 @@ export function showFigures(prediction) {
     element("p", { class: "muted" }, `In parentheses: interval with coverage factor 2. ${prediction.error_estimate.summary?.join(" ") ?? ""}`),
     events.length ? element("p", { class: "muted" }, `Events: ${events.join("; ")}`) : "",
     ...asDrawn(prediction),
+    ...byFilling(prediction),
   );
+}
+
+/** The states given by their gas or height, which go on beyond the limit point. */
+function byFilling(prediction) {
+  if (!prediction.filled?.length) return [];
+  const columns = [...COLUMNS.slice(0, 2), COLUMNS[3], COLUMNS[4]];
+  const rows = prediction.filled.map((state) => [
+    `${short(state.held.injected_volume_mL)} mL`,
+    `${short(state.driving_pressure_kPa)}`,
+    [state.held.stable_regulated ? "regulator" : null, state.held.stable_sealed ? "syringe" : null].filter(Boolean).join(" or ") || "nothing",
+    ...columns.map(([key]) => short(state[key])),
+  ]);
+  const head = ["injected, at ambient pressure", "pressure, kPa", "held by", ...columns.map(([, words]) => words)];
+  return [element("h3", {}, "By injected gas or height (no intervals are known)"), table(head, rows)];
 }
 
 /** The figures with the gas as drawn, if the design states a dead volume of zero behind a tube. */

@@ -25,9 +25,18 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_pieces
-from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
+from pneutouch.workflows.sweep.grid import FILLINGS, PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import FinishedPoints, Journal, check_output
-from pneutouch.workflows.sweep.variables import ENDS, INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
+from pneutouch.workflows.sweep.variables import (
+    ENDS,
+    FILLED_SENSITIVITY,
+    INTERVAL,
+    MAPPED,
+    POINT,
+    STATE,
+    SweepVariable,
+    missing_reasons,
+)
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 if TYPE_CHECKING:
@@ -306,25 +315,26 @@ def _picture_files(out: Path, name: str) -> tuple[Path, Path]:
 
 
 def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
-    """Sensitivity over the swept fields, to be drawn; None if no state has one. A list becomes a grid (`_gridded`)."""
+    """Sensitivity over the swept fields, to be drawn; None if no state has one. A list becomes a grid (`_gridded`).
+
+    Over injected gas or apex heights it is that of the states which have these, without interval."""
     from pneutouch.report.swept import SweptFigure
 
-    if not np.isfinite(content[SENSITIVITY_KEY].values).any():
+    filled = any(values.attrs.get("key") in FILLINGS for values in content.coords.values())
+    names = (FILLED_SENSITIVITY,) * 3 if filled else (SENSITIVITY_KEY, *ENDS)
+    if not np.isfinite(content[names[0]].values).any():
         return None
-    dims = [str(dim) for dim in content[SENSITIVITY_KEY].dims]
-    if dims[0] == "point":
+    content = content[list(dict.fromkeys(names))]
+    if content[names[0]].dims[0] == "point":
         content = _gridded(content)
-        dims = [str(dim) for dim in content[SENSITIVITY_KEY].dims]
-    axes = tuple(_axis(content, name) for name in dims)
-    arrays = (content[name].values for name in (SENSITIVITY_KEY, *ENDS))
-    return SweptFigure("sensitivity  (kPa/N)", axes, *arrays)
+    axes = tuple(_axis(content, str(name)) for name in content[names[0]].dims)
+    return SweptFigure("sensitivity  (kPa/N)", axes, *(content[name].values for name in names))
 
 
-def _gridded(content: xarray.Dataset) -> xarray.Dataset:
+def _gridded(kept: xarray.Dataset) -> xarray.Dataset:
     """A list of points over its varied field, if it is the only one and without repeats; else over their number."""
-    fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
-    kept = content[[SENSITIVITY_KEY, *ENDS]]
-    places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
+    fields = [str(name) for name, values in kept.coords.items() if name != "point" and values.dims == ("point",)]
+    places = list(zip(*(kept[name].values.tolist() for name in fields), strict=True))
     if len(fields) == 1 and len(set(places)) == len(places):
         return kept.swap_dims(point=fields[0]).sortby(fields[0])
     return kept

@@ -24,6 +24,9 @@ from pneutouch.spec.values import file_name, is_finite, name_of
 PRESSURES = "pneumatics.driving_pressures_kPa"
 """The one field that is a dimension of every sweep, because a prediction gives all its states at once."""
 
+FILLINGS = "pneumatics.injected_volumes_mL", "pneumatics.apex_heights_mm"
+"""Fields of which a point of a sweep has one value, as a state beside those at its driving pressures."""
+
 MAX_POINTS = 10_000_000
 """Greatest number of points that are computed without being asked for again: ten hours of one core by the atlas."""
 
@@ -118,9 +121,13 @@ class SweepPlan:
     def overrides(self, index: int) -> Settings:
         """All settings of the point ``index``, including those common to all points."""
         if self.points:
-            return {**self.settings, **self.points[index]}
-        place = self.position(index)
-        return {**self.settings, **{axis.key: axis.values[k] for axis, k in zip(self.axes, place, strict=True)}}
+            own = self.points[index]
+        else:
+            own = {axis.key: axis.values[k] for axis, k in zip(self.axes, self.position(index), strict=True)}
+        given = {**self.settings, **own}
+        return {
+            key: [value] if key in FILLINGS and not isinstance(value, list) else value for key, value in given.items()
+        }
 
 
 def _check_key(where: str, key: str) -> None:

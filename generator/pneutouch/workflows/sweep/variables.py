@@ -113,6 +113,18 @@ def _apex_at_limit(side: str) -> SweepVariable:
     return _number(f"limit_point_{key}", "mm", meaning, "limit_point", key)
 
 
+def _filled(key: str, units: str, meaning: str, *within: str) -> SweepVariable:
+    """Variable of the state that a point has by its injected gas or apex height."""
+
+    def read(record: PredictionRecord) -> Any:
+        value = _at(*within, key)(record.filled[0]) if record.filled else None
+        return None if value is None else float(value)
+
+    return SweepVariable(f"filled_{key}", units, f"{meaning}, of the state by gas or height; none: NaN", read)
+
+
+FILLED_SENSITIVITY = f"filled_{SENSITIVITY_KEY}"
+
 _TEAR = "driving pressure at which the resin may tear; not before the limit point: NaN"
 _RATED = "greatest driving pressure to be used: 0.9 of the lower end (k = 2) of the least limit"
 _ERROR = "greatest known error of the sensitivity; unknown: NaN"
@@ -133,6 +145,14 @@ POINT: tuple[SweepVariable, ...] = (
     _number("error_sensitivity_relative", "1", _ERROR, "error_estimate", "sensitivity_relative"),
     _number("error_limit_pressure_relative", "1", _LIMIT_ERROR, "error_estimate", "limit_pressure_relative"),
     SweepVariable("error_sensitivity_basis", "", _BASIS, _at("error_estimate", "sensitivity_basis"), True),
+    _filled("injected_volume_mL", "mL", "gas injected into the vented sensor, at ambient pressure", "held"),
+    _filled("driving_pressure_kPa", "kPa", "pressure before contact"),
+    _filled("apex_height_outer_mm", "mm", "apex height of the outer surface before contact"),
+    _filled("stable_regulated", "1", "1: a regulator holds it", "held"),
+    _filled("stable_sealed", "1", "1: a syringe holds it", "held"),
+    _filled(SENSITIVITY_KEY, "kPa/N", "sensitivity"),
+    _filled(STIFFNESS_KEY, "N/mm", "stiffness"),
+    _filled("range_end_mm", "mm", "range end"),
 )
 """Variables for every point."""
 

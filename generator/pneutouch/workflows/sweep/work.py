@@ -26,7 +26,7 @@ from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
-from pneutouch.workflows.sweep.grid import PRESSURES, Settings, SweepPlan
+from pneutouch.workflows.sweep.grid import FILLINGS, PRESSURES, Settings, SweepPlan
 from pneutouch.workflows.sweep.variables import Interval, point_values, sensitivity_intervals, state_values
 
 
@@ -79,6 +79,16 @@ def study(plan: SweepPlan, library: Library, *, tried: bool = True) -> SweepStud
     library = CachedLibrary(library.folders)
     source = DesignSource.of(plan.design, library)
     base = source.changed({})
+    for key in FILLINGS:
+        given = plan.settings.get(key, getattr(base.pneumatics, key.partition(".")[2]))
+        if isinstance(given, list) and len(given) > 1:
+            raise InputError(
+                "a point of a sweep has one state of this kind",
+                file=plan.where,
+                key=key,
+                value=given,
+                remedy=f"vary it, as by `over` {key}={given[0]:g}:{given[-1]:g}:{len(given)}",
+            )
     if tried:
         _check(plan, library)
     plan = replace(plan, model=_model(plan, base))
@@ -268,7 +278,10 @@ class _PointWork:
             self.result = outcome
             return
         pressures_kPa = self.left.driving_pressures_kPa
-        kept_kPa = [p for p in pressures_kPa[:-1] if p * KPA < min(outcome.limit, outcome.pressure)]
+        if outcome.pressure < 0.0:
+            kept_kPa = [p for p in pressures_kPa[1:] if p * KPA > outcome.limit]
+        else:
+            kept_kPa = [p for p in pressures_kPa[:-1] if p * KPA < min(outcome.limit, outcome.pressure)]
         self.beyond.append((outcome, len(pressures_kPa) - len(kept_kPa)))
         self.left = replace(self.left, driving_pressures_kPa=tuple(kept_kPa))
 
@@ -277,7 +290,12 @@ class _PointWork:
         states: list[dict[str, Any]] = []
         values: dict[str, Any] = {}
         refused: list[dict[str, Any]] = []
+        buckled: list[dict[str, Any]] = []
         for error, count in self.beyond:
+            if error.limit < 0.0:
+                text = f"the dome buckles in the vacuum: at least {error.limit / KPA:.2f} kPa"
+                buckled += _stopped("refused", text, count, library)
+                continue
             text = f"driving pressure beyond the limit point, where the dome snaps: at most {error.limit / KPA:.2f} kPa"
             refused += _stopped("refused", text, count, library)
             values = {"limit_point_kPa": float(f"{error.limit / KPA:.12g}")}
@@ -285,7 +303,7 @@ class _PointWork:
             states = _failure(outcome, len(self.left.driving_pressures_kPa), library)
         elif outcome is not None:
             states, values = outcome
-        return {"point": self.point.index, "states": states + refused, "values": values}
+        return {"point": self.point.index, "states": buckled + states + refused, "values": values}
 
 
 _Values = tuple[list[dict[str, Any]], dict[str, Any]]
