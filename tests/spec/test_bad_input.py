@@ -51,7 +51,10 @@ CASES = [
     ("[pneumatics]\ndriving_pressures_kPa = [0, -105]", ["driving_pressures_kPa", "from -100 to 1000 kPa"]),
     ("[pneumatics]\ndriving_pressures_kPa = [5, 5]", ["driving_pressures_kPa", "once only"]),
     ("[pneumatics]\ndriving_pressures_kPa = [0, nan]", ["driving_pressures_kPa[1]", "finite"]),
-    ("[pneumatics]\ndriving_pressures_kPa = [0, 5, 1200]", ["driving_pressures_kPa[2] = 1200", "from -100 to 1000 kPa"]),
+    (
+        "[pneumatics]\ndriving_pressures_kPa = [0, 5, 1200]",
+        ["driving_pressures_kPa[2] = 1200", "from -100 to 1000 kPa"],
+    ),
     ("[connector]\nfinger_diameter_mm = 20", ["finger_diameter_mm = 20", "goes over no finger", "finger-16"]),
     ("[pneumatics]\ndriving_pressures_kPa = [0, 'a']", ['driving_pressures_kPa[1] = "a"', "a number"]),
     (

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pictures.accuracy import CHARTS as ACCURACY
 from pictures.background import CHARTS as BACKGROUND
 from pictures.mixing import CHARTS as MIXING
+from pictures.paper import CHARTS as PAPER
 from pictures.presses import CHARTS as PRESSES
 from pictures.prints import CHARTS as PRINTS
 from pictures.texture import CHARTS as TEXTURE
 
-CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PRESSES, **PRINTS, **TEXTURE}
+CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PAPER, **PRESSES, **PRINTS, **TEXTURE}
