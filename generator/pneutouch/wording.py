@@ -53,7 +53,7 @@ def enumerated(words: Sequence[str]) -> str:
 
 
 def held_by(regulated: bool, sealed: bool) -> str:
-    """What holds an inflated state before contact, in words."""
+    """Names of what holds an inflated state before contact."""
     return " or ".join(["regulator"] * regulated + ["syringe"] * sealed) or "nothing"
 
 

@@ -166,7 +166,7 @@ def test_one_driving_pressure_is_a_list_of_one(command):
     assert one.stdout == command(*words, "pneumatics.driving_pressures_kPa=[5]").stdout
     wrong = command(*words, "pneumatics.driving_pressures_kPa=5000")
     assert wrong.returncode == 2
-    assert wrong.stderr == "error: --set pneumatics.driving_pressures_kPa[0]=5000: must be from 0 to 1000 kPa\n"
+    assert wrong.stderr == "error: --set pneumatics.driving_pressures_kPa[0]=5000: must be from -100 to 1000 kPa\n"
 
 
 def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):

@@ -194,11 +194,21 @@ def uncertainties(
     ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds
     ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
+    blown = tuple(state for state in prediction.states if state.driving_pressure >= 0.0)
+    known = iter(_of_blown(replace(prediction, states=blown), sensor, scene, resins, samples) if blown else ())
+    sucked = UncertaintyRecord(unknown=_VACUUM)
+    return tuple(sucked if state.driving_pressure < 0.0 else next(known) for state in prediction.states)
+
+
+def _of_blown(
+    prediction: SensorPrediction,
+    sensor: Sensor,
+    scene: ResolvedDesign,
+    resins: Callable[[], Mapping[str, Material]],
+    samples: int,
+) -> tuple[UncertaintyRecord, ...]:
+    """`uncertainties` of states from ambient pressure on."""
     states, model = prediction.states, prediction.model
-    if any(state.driving_pressure < 0.0 for state in states):
-        blown = tuple(state for state in states if state.driving_pressure >= 0.0)
-        known = iter(uncertainties(replace(prediction, states=blown), sensor, scene, resins, samples) if blown else ())
-        return tuple(UncertaintyRecord(unknown=_VACUUM) if s.driving_pressure < 0.0 else next(known) for s in states)
     notes_of_wall, fitted, sensor = notes_on(sensor), sensor.wall.fitted, sensor.even
     why = why_unknown(sensor, model)
     if why is not None:

@@ -106,8 +106,8 @@ class GasCircuit:
 
 
 class Filling(NamedTuple):
-    """What fixes an inflated state in place of its pressure: the gas ``injected`` into the vented sensor, mm3 at
-    ambient pressure, or the height of the ``apex`` outside, mm. Either is unique where one pressure has two states."""
+    """A quantity that fixes an inflated state in place of its pressure, unique where one pressure has two states: the
+    gas ``injected`` into the vented sensor, mm3 at ambient pressure, or the height of the ``apex`` outside, mm."""
 
     kind: Literal["injected", "apex"]
     value: float

@@ -296,6 +296,8 @@ def map_design(arguments: Mapping[str, Any], folder: Path, report: Report) -> De
     if x.field == y.field:
         raise InputError("both axes have this field", key="y.field", value=y.field, remedy="choose another one here")
     source, at_kPa = question.source(arguments["bases"], library), _within(PRESSURES, "map.pressure_kPa", given)
+    if at_kPa < 0.0:
+        raise InputError("must be at least 0: the atlas has no vacuum", key="map.pressure_kPa", value=at_kPa)
     points: list[Settings] = [{PRESSURES: at_kPa, x.field: a, y.field: b} for a in x.values for b in y.values]
     for point in points:
         point[PRESSURES] = [point[PRESSURES]]

@@ -91,8 +91,8 @@ BAD = {
     ),
     "bad point": (f"{BASE}[[point]]\n{WALL} = 1\n[[point]]\n{WALL} = 60", ["point[1]", "from 0.05 to 50 mm"]),
     "pressures out of bounds": (
-        f'{BASE}[grid]\n{WALL} = [1]\n"pneumatics.driving_pressures_kPa" = [0, -5]',
-        ["driving_pressures_kPa", "from 0 to 1000 kPa"],
+        f'{BASE}[grid]\n{WALL} = [1]\n"pneumatics.driving_pressures_kPa" = [0, -105]',
+        ["driving_pressures_kPa", "from -100 to 1000 kPa"],
     ),
     "title": (f'{BASE}[grid]\n"document.title" = ["a"]', ["document.title", "no prediction depends on it"]),
     "no design": (f"[grid]\n{WALL} = [1]", ["design: missing"]),

@@ -14,7 +14,6 @@ import numpy as np
 
 from pneutouch.arrays import hermite
 from pneutouch.errors import InputError
-from pneutouch.mechanics.models.solid import PressedState, solid_probe
 from pneutouch.mechanics.prediction import Held, SensorState
 from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, inflate, rest_state, towards
@@ -33,13 +32,16 @@ _FILLINGS = {"injected": ("injected_volumes_mL", "mL", ML), "apex": ("apex_heigh
 """Key of [pneumatics], unit and scale of each kind of filling."""
 
 
-def filled_states(sensor: Sensor, fillings: Sequence[Filling], press: PressedState) -> tuple[SensorState, ...]:
-    """States given by their fillings, each pressed with its gas shut in by ``press``; errors as in `free_states`."""
-    probe, states = solid_probe(sensor), []
-    for free, held in free_states(sensor, probe, fillings):
-        pressure = free.pressure if held.injected else 0.0
-        states.append(replace(press(sensor, probe, free, pressure), held=held))
-    return tuple(states)
+def filled_states(
+    sensor: Sensor,
+    probe: StrainProbe,
+    fillings: Sequence[Filling],
+    press: Callable[[Sensor, StrainProbe, FreeState, float], SensorState],
+) -> tuple[SensorState, ...]:
+    """States given by their fillings; ``press`` presses one from its driving pressure. Errors as in `free_states`."""
+    free = free_states(sensor, probe, fillings)
+    at = (state.pressure if held.injected else 0.0 for state, held in free)
+    return tuple(replace(press(sensor, probe, one, p), held=held) for (one, held), p in zip(free, at, strict=True))
 
 
 def free_states(sensor: Sensor, probe: StrainProbe, fillings: Sequence[Filling]) -> list[tuple[FreeState, Held]]:
@@ -97,7 +99,7 @@ def _measure(sensor: Sensor, solid: SolidModel, kind: str, at_rest: float) -> Me
 
 
 def _held(sensor: Sensor, solid: SolidModel, free: FreeState, rest: FreeState) -> Held:
-    """How a free state can be held. The solver finds a state by its volume only where it is stable at that volume."""
+    """Gas of a free state and what holds it; the solver finds a state by its volume only if it is stable at that."""
     gas, is_round = sensor.gas, _is_round(sensor, solid, free)
     of_gas = (free.pressure + gas.ambient_pressure) / (free.volume + gas.dead_volume)
     injected = float(gas.injected(free.pressure, free.volume, rest.volume)) if free.volume != rest.volume else 0.0

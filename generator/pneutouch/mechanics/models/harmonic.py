@@ -21,6 +21,7 @@ from pneutouch.mechanics.models.solid import (
     press_settings,
     pressed_columns,
     reported_events,
+    solid_probe,
     solid_result,
 )
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
@@ -72,7 +73,7 @@ class HarmonicElements(SensorModel):
         """States given by their fillings, inflated by the solid."""
         from pneutouch.mechanics.models.filling import filled_states
 
-        return filled_states(sensor, fillings, _state)
+        return filled_states(sensor, solid_probe(sensor), fillings, _state)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Errors of the mesh and of the Fourier sums."""

@@ -80,7 +80,7 @@ class SolidElements(SensorModel):
         """States given by their fillings: `filled_states`."""
         from pneutouch.mechanics.models.filling import filled_states
 
-        return filled_states(sensor, fillings, partial(_state, {}))
+        return filled_states(sensor, solid_probe(sensor), fillings, partial(_state, {}))
 
     def stated_error(self, sensor: Sensor) -> float:
         """Relative error of the mesh in sensitivity, which is greater for an object other than a plate."""
