@@ -62,6 +62,22 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     assert screen.evaluate(f"{_WALL}.value") == "1.5"
 
 
+def test_states_by_injected_gas_stand_in_a_table_and_on_both_branches_of_the_chart(screen, command):
+    gas = "#paper-dome&pneumatics.injected_volumes_mL=%5B1%2C%204%2C%207%5D"
+    screen.evaluate(f"location.hash = {gas!r}")
+    solved(screen, gas)
+    said = json.loads(
+        command("predict", "paper-dome", "--set", "pneumatics.injected_volumes_mL=[1, 4, 7]", "--json").stdout
+    )
+    rows = screen.evaluate(
+        "[...document.querySelectorAll('#figures table:last-of-type tbody tr')].map(e => [...e.children].map(c => c.textContent))"
+    )
+    assert [row[2] for row in rows] == ["regulator or syringe", "regulator or syringe", "syringe"]
+    assert [float(row[3]) for row in rows] == [float(f"{s['sensitivity_kPa_per_N']:.4g}") for s in said["filled"]]
+    legend = screen.locator("#sensitivity .u-legend").text_content()
+    assert "by injected gas" in legend and "beyond the limit" in legend
+
+
 @pytest.mark.slow
 def test_a_resin_takes_a_printer_that_runs_it(screen, pages):
     # That no request goes elsewhere is required by the fixtures; here, that requests are seen at all.
