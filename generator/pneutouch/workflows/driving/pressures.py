@@ -292,7 +292,7 @@ class LeakSource:
             volume = gas.dead_volume or assembly.internal_volume + assembly.tube_volume
         else:
             volume = float(np.interp(self.pressure_kPa * KPA, gas.pressure, gas.capacity))
-        return max(0.0, conductance_of_cap(rate, self.pressure_kPa * KPA, volume))
+        return max(0.0, conductance_of_cap(rate, self.pressure_kPa * KPA, volume, gas.ambient))
 
 
 def read_leak(path: Path, design: str) -> LeakSource:
