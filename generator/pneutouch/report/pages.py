@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder
@@ -126,6 +128,7 @@ def filled(template: str, **values: Any) -> str:
     environment = _environment(autoescape=False)
     environment.filters |= {"f": format, "md": markdown_escaped, "time": _time}
     environment.filters["listed"] = lambda values: ", ".join(f"{value:g}" for value in values)
+    environment.filters["size"] = lambda body: " x ".join(f"{length:.1f}" for length in np.ptp(body.bounds, axis=0))
     environment.filters["value"] = lambda value: "–" if value is None else f"{value:.2f}"
     return environment.get_template(template).render(**values).rstrip() + "\n"
 

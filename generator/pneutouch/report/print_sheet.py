@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 
-from pneutouch.body import Body
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.parts.glue import GLUES, glue_of
@@ -207,7 +206,7 @@ def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
         scene=scene,
         number=part_number(scene),
         bodies=[
-            (body.name, solid.material.label, *assembly.machine(body.name), _size(body), solid.mass)
+            (body, solid.material.label, *assembly.machine(body.name), solid.mass)
             for body, solid in zip(assembly.bodies, assembly.solids, strict=True)
         ],
         left_out=left_out,
@@ -216,8 +215,7 @@ def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
         parts=[]
         if mould is None
         else [
-            (body.name, mould.counts[body.name], _size(body), solid.mass)
-            for body, solid in zip(mould.printed, mould.solids, strict=True)
+            (body, mould.counts[body.name], solid.mass) for body, solid in zip(mould.printed, mould.solids, strict=True)
         ],
         facts=[] if mould is None else mould_rows(mould),
         steps=making(scene, sheet.pour),
@@ -237,8 +235,3 @@ def _time(time_min: float | None) -> str:
         return "not known"
     minutes = round(time_min)
     return f"{minutes} min" if minutes < 100 else f"{time_min / 60:.1f} h"
-
-
-def _size(body: Body) -> str:
-    bounds = body.bounds
-    return " x ".join(f"{length:.1f}" for length in bounds[1] - bounds[0])

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.body.solid import manifold_of
 from pneutouch.parts.specimen import Mesh, PatternGeometry
 from pneutouch.printability import Finding
+from pneutouch.report.pages import filled
 from pneutouch.report.section import loops_path
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, halo, svg
 from pneutouch.results.specimen import BlockRecord, PatternLayer, ScanPathRecord, SpecimenRecord
 from pneutouch.spec.specimen import Layer
 from pneutouch.units import grams
-from pneutouch.wording import markdown_escaped
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
 if TYPE_CHECKING:
@@ -37,30 +37,31 @@ def specimen_record(drawn: SpecimenBodies) -> SpecimenRecord:
         inclusion_fraction=_rounded(volumes["inclusion"] / scene.block.volume),
         block_to_print_frame_mm=tuple(drawn.offset.tolist()),
         scan=ScanPathRecord(scene.specimen.scan.speed_mm_per_s, "x", block.height_mm),
-        layers=tuple(
-            _layer(drawn, layer, pattern) for layer, pattern in zip(scene.specimen.layer, drawn.patterns, strict=True)
-        ),
+        layers=tuple(_layer(drawn, *layer) for layer in _layers(drawn)),
     )
 
 
-def title(layer: Layer, number: int) -> str:
-    """Name of a layer; its number, from 1, if it has none."""
-    return layer.name or f"layer {number + 1}"
+def _layers(drawn: SpecimenBodies) -> list[tuple[str, Layer, PatternGeometry, list[float]]]:
+    """Layers by name, or by number from 1 without one, with pattern and frequencies, Hz, at the speed of the scan."""
+    speed, pairs = (
+        drawn.scene.specimen.scan.speed_mm_per_s,
+        zip(drawn.scene.specimen.layer, drawn.patterns, strict=True),
+    )
+    return [
+        (layer.name or f"layer {number}", layer, pattern, [speed / pitch for pitch in pattern.pitches])
+        for number, (layer, pattern) in enumerate(pairs, start=1)
+    ]
 
 
-def frequencies(drawn: SpecimenBodies, pattern: PatternGeometry) -> list[float]:
-    """Frequencies in Hz of a pattern's pitches at the speed of the scan."""
-    return [drawn.scene.specimen.scan.speed_mm_per_s / pitch for pitch in pattern.pitches]
-
-
-def _layer(drawn: SpecimenBodies, layer: Layer, pattern: PatternGeometry) -> PatternLayer:
-    number, top = drawn.scene.specimen.layer.index(layer), drawn.scene.block.high[2]
-    low, high = pattern.box.low, pattern.box.high
+def _layer(
+    drawn: SpecimenBodies, name: str, layer: Layer, pattern: PatternGeometry, frequencies: list[float]
+) -> PatternLayer:
+    top, low, high = drawn.scene.block.high[2], pattern.box.low, pattern.box.high
     return PatternLayer(
-        name=title(layer, number),
+        name=name,
         kind=layer.kind,
         pitches_mm=tuple(map(_rounded, pattern.pitches)),
-        frequencies_Hz=tuple(map(_rounded, frequencies(drawn, pattern))),
+        frequencies_Hz=tuple(map(_rounded, frequencies)),
         depth_mm=_rounded(top - high[2]),
         bottom_depth_mm=_rounded(top - low[2]),
         start_mm=_rounded(low[0]),
@@ -78,72 +79,18 @@ def _rounded(value: float) -> float:
 
 def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_out: Mapping[str, str]) -> str:
     """Print sheet as Markdown, for the operator, who chooses resins; ``left_out``: files not written, and why."""
-    scene, document = drawn.scene, drawn.scene.specimen.document
-    speed = scene.specimen.scan.speed_mm_per_s
-    listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
-    steps = (f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1))
-    parts = (
-        f"# Print sheet: {markdown_escaped(document.title)}",
-        f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
-        "\n".join(_bodies(drawn)),
-        f"Machine: {scene.printer.title}, {scene.mode.label}. All bodies are **one job**: load them as one assembly "
-        f"(`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, in millimetres, all "
-        "coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
-        *(f"Not written: `{name}`. {why}." for name, why in left_out.items()),
-        "## Layers",
-        f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
-        "\n".join(_layers(drawn)),
-        "## Steps",
-        "\n".join(steps),
-        "## Findings of the rules",
-        "\n".join(listed),
+    return filled(
+        "specimen.md.j2",
+        scene=drawn.scene,
+        document=drawn.scene.specimen.document,
+        bodies=drawn.bodies,
+        layers=_layers(drawn),
+        top=drawn.scene.block.high[2],
+        grams=grams,
+        findings=findings,
+        input_hash=input_hash,
+        left_out=left_out,
     )
-    return "\n\n".join(parts) + "\n"
-
-
-def _bodies(drawn: SpecimenBodies) -> list[str]:
-    rows = ["| body | file | material | size, mm | volume, mm3 | mass |", "|---|---|---|---|---|---|"]
-    for body in drawn.bodies:
-        size = " x ".join(f"{length:.1f}" for length in body.bounds[1] - body.bounds[0])
-        mass = grams(body.volume, body.material.density_g_per_cm3.nominal)
-        rows.append(
-            f"| {body.name} | stl/{body.name}.stl | {body.material.label} | {size} | {body.volume:.1f} | {mass:.2f} g |"
-        )
-    return rows
-
-
-def _layers(drawn: SpecimenBodies) -> list[str]:
-    top = drawn.scene.block.high[2]
-    rows = [
-        "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its "
-        "box |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
-        low, high = pattern.box.low, pattern.box.high
-        pitches = ", ".join(f"{pitch:.4g}" for pitch in pattern.pitches)
-        hertz = ", ".join(f"{frequency:.3g}" for frequency in frequencies(drawn, pattern))
-        rows.append(
-            f"| {markdown_escaped(title(layer, number))} | {layer.kind} | {pitches} | {hertz} | {top - high[2]:.4g} | "
-            f"{low[0]:.4g} to {high[0]:.4g} | {pattern.mesh.volume:.1f} | "
-            f"{pattern.mesh.volume / pattern.box.volume:.3f} |"
-        )
-    return rows
-
-
-def _steps(drawn: SpecimenBodies) -> list[str]:
-    scene = drawn.scene
-    under = "the frame" if scene.frame is not None else "the bottom"
-    marked = " The cut corner of the frame is at x = y = 0, the start of the path." if scene.frame is not None else ""
-    return [
-        f"Orient it as in the file: {under} on the tray, the scanned surface up. Set the surface finish to glossy: no "
-        f"support then touches the scanned surface.{marked}",
-        f"Assign {', '.join(f'{body.material.label} to {body.name}' for body in drawn.bodies)}.",
-        f"Remove support from the sides: {scene.printer.support}. The patterns are embedded: nothing has to come out "
-        "from inside.",
-        "Keep a high-pressure jet off the soft surface; rinse, dry, and let it rest lying flat.",
-        "Scan along x from the start of the path; specimen.json holds where each pattern begins and ends.",
-    ]
 
 
 _WIDTH = 180.0
@@ -267,15 +214,15 @@ def _table(ax: Axes, drawn: SpecimenBodies) -> None:
     columns = (0.0, 0.045, 0.29, 0.43, 0.57, 0.73, 0.87)
     heads = ("", "layer", "kind", "pitch, mm", "frequency, Hz", "depth, mm", "x, mm")
     lines = [heads]
-    for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
+    for number, (name, layer, pattern, frequencies) in enumerate(_layers(drawn), start=1):
         low, high = pattern.box.low, pattern.box.high
         lines.append(
             (
-                str(number + 1),
-                title(layer, number),
+                str(number),
+                name,
                 layer.kind,
                 _several(list(pattern.pitches)),
-                _several(frequencies(drawn, pattern)),
+                _several(frequencies),
                 f"{top - high[2]:.4g} to {top - low[2]:.4g}",
                 f"{low[0]:.4g} to {high[0]:.4g}",
             )
