@@ -70,6 +70,9 @@ def blends(pair: str, library: Library) -> list[CouponMix]:
 
 MOST_COPIES = 100
 
+CAST_EXCESS = 1.3
+"""Ratio of silicone mixed to silicone in the coupons: some is struck off, some stays in the cup; our choice."""
+
 MIXED = ("puck", "dumbbell")
 """Names of the coupons that are printed of mixes."""
 
@@ -122,6 +125,11 @@ class CouponItem:
             return drawn
         factor = 1.0 / (1.0 - 0.01 * casting.shrinkage_percent.nominal)
         return tuple(open_mould(solid, self.mould, factor) for solid in drawn)
+
+    @property
+    def silicone_g(self) -> float:
+        """Mass of silicone to mix for the copies of a cast coupon."""
+        return CAST_EXCESS * self.copies * sum(solid.mass for solid in self.coupon.draw(self.context))
 
     @property
     def nominals(self) -> tuple[Nominal, ...]:
