@@ -16,6 +16,7 @@ from pneutouch.output.recipe import scene_parts
 from pneutouch.parts.lettering.mark import EXPLAINED, shape_of
 from pneutouch.printability import check, refuse
 from pneutouch.printability.subject import PrintItem, PrintSubject
+from pneutouch.report.pages import filled
 from pneutouch.report.section import loops_path
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
 from pneutouch.results.printing import TrayFinding
@@ -24,7 +25,7 @@ from pneutouch.results.tray import LabelRow, TrayJobRecord, TrayRecord
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.units import grams
-from pneutouch.wording import counted, markdown_escaped
+from pneutouch.wording import counted
 from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, fill, layers, outline
 
 if TYPE_CHECKING:
@@ -241,26 +242,18 @@ def rows(layout: TrayLayout) -> tuple[LabelRow, ...]:
     return tuple(row for job in layout.jobs for part in job.parts for row in _rows(layout, job, part))
 
 
-def _labels_md(layout: TrayLayout, record: TrayRecord, findings: tuple[TrayFinding, ...] = ()) -> bytes:
+def _labels_md(layout: TrayLayout, record: TrayRecord, findings: tuple[TrayFinding, ...]) -> bytes:
     """Label list to print and stick on: a head, a table a job, a legend of marks, and findings of the rules."""
-    printer, head = layout.printer, layout.order.tray.tray
-    lines = [
-        f"# {markdown_escaped(head.title)}",
-        "",
-        f"{record.printer}: {counted(record.parts, 'part')}, **{record.resin_changes}**. Support: {printer.support}.",
-        "",
-        *(f"Not on this tray: {markdown_escaped(note)}." for note in record.left_out),
+    jobs = [
+        (job, _coarser(layout, job), [row for row in record.labels if row.job == number])
+        for number, job in enumerate(layout.jobs, start=1)
     ]
-    for number, job in enumerate(layout.jobs, start=1):
-        lines += ["", *_job_lines(layout, job, record, number)]
-    lines += ["", "## Reading the marks", "", *_marks(layout), ""]
-    lines += [
-        "## Findings of the rules",
-        "",
-        *([f"- {markdown_escaped(one.text)}." for one in findings] or ["- none"]),
-        "",
-    ]
-    return "\n".join(lines).encode()
+    kinds = {mark.kind for part in layout.parts for mark in part.marks}
+    letters = {part.value.index: part.value.letter for part in layout.parts}
+    about = {"letters": letters, "explained": EXPLAINED, "fill": fill, "counted": counted}
+    return filled(
+        "labels.md.j2", layout=layout, record=record, jobs=jobs, kinds=kinds, findings=findings, **about
+    ).encode()
 
 
 def _rows(layout: TrayLayout, job: TrayJob, part: TrayPart) -> Iterator[LabelRow]:
@@ -295,70 +288,11 @@ def _rows(layout: TrayLayout, job: TrayJob, part: TrayPart) -> Iterator[LabelRow
         )
 
 
-def _job_lines(layout: TrayLayout, job: TrayJob, record: TrayRecord, number: int) -> list[str]:
-    shares = fill(job, layout.printer)
-    listed = [row for row in record.labels if row.job == number]
-    table = [
-        # A mix with its base resins, without which a digital material's code is ambiguous.
-        f"| **{row.label}** | {row.body} | {_value(row)} | {row.material}"
-        f"{f' ({row.base_resins})' if ' + ' in row.base_resins else ''} | "
-        f"{row.x_mm:.1f}, {row.y_mm:.1f} | {row.mass_g:.2f} | {_mark(row)} |"
-        for row in listed
-    ]
-    mass = sum(row.mass_g for row in listed)
-    return [
-        f"## Job {number}: `{layout.name(job)}.3mf`",
-        "",
-        f"Load {' and '.join(job.resins)}. Mode {job.mode.label}, {job.layers} layers, "
-        f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of "
-        f"the envelope's footprint, outlines {shares['outlines']:.1%}.",
-        "",
-        *(line for note in _coarser(layout, job) for line in (note, "")),
-        "| label | body | design | resin | middle x, y mm | mass g | mark |",
-        "|---|---|---|---|---|---|---|",
-        *table,
-    ]
-
-
-def _value(row: LabelRow) -> str:
-    varied = f", {row.varied.partition('.')[2]} = {row.value}" if row.varied else ""
-    return markdown_escaped(f"{row.design}{varied}, copy {row.copy}")
-
-
-def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
-    """Lines on materials that alone would print in a finer mode than that of their job."""
+def _coarser(layout: TrayLayout, job: TrayJob) -> list[tuple[str, Mode]]:
+    """Materials that alone would print in a finer mode than that of their job, with that mode."""
     modes = {
         solid.material.label: layout.printer.mode_for(*(s.material for s in part.solids))
         for part in job.parts
         for solid in part.solids
     }
-    return [
-        f"{label} alone would print in {mode.label}: the other resins of the job take that from it."
-        for label, mode in modes.items()
-        if mode is not None and mode.layer_um < job.mode.layer_um
-    ]
-
-
-def _mark(row: LabelRow) -> str:
-    where = f"{row.mark}, {row.mark_face}" if row.mark_face else row.mark
-    return f"{where}; {row.mark_note}" if row.mark_note else where
-
-
-def _marks(layout: TrayLayout) -> list[str]:
-    """Lines that explain the kinds of mark on the tray."""
-    marks = [mark for part in layout.parts for mark in part.marks]
-    kinds = {mark.kind for mark in marks}
-    lines = []
-    if "tally" in kinds:
-        lines.append(f"- Membranes carry a tally on the flange. {EXPLAINED}")
-        counts = ", ".join(
-            f"{letter} {index}" for index, letter in {p.value.index: p.value.letter for p in layout.parts}.items()
-        )
-        lines.append(f"- Letters as numbers: {counts}.")
-    if "text" in kinds:
-        lines.append("- Rigid bodies carry the label in letters; all parts of one sensor carry the same.")
-    if "none" in kinds:
-        lines.append(
-            "- Parts without a mark differ by their place on the tray alone: bag and label them as they come off."
-        )
-    return lines
+    return [(label, mode) for label, mode in modes.items() if mode is not None and mode.layer_um < job.mode.layer_um]
