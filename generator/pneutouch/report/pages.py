@@ -6,17 +6,14 @@ import json
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder
-from pneutouch.wording import markdown_escaped
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from pneutouch.wording import markdown_escaped, templates
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -104,28 +101,15 @@ def pdf(sheet: Sheet) -> bytes:
         )
 
 
-def _environment(*, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> "Environment":
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    return Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        autoescape=autoescape,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=finalize,
-    )
-
-
 def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, **more: Any) -> str:
-    environment = _environment(autoescape=True, finalize=finalize)
+    environment = templates(TEMPLATES, autoescape=True, finalize=finalize)
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template(template).render(sheet=sheet, **more)
 
 
 def filled(template: str, **values: Any) -> str:
     """A Markdown template filled with ``values``; filters format numbers, times and lists, and escape Markdown."""
-    environment = _environment(autoescape=False)
+    environment = templates(TEMPLATES, autoescape=False)
     environment.filters |= {"f": format, "md": markdown_escaped, "time": _time}
     environment.filters["listed"] = lambda values: ", ".join(f"{value:g}" for value in values)
     environment.filters["size"] = lambda body: " x ".join(f"{length:.1f}" for length in np.ptp(body.bounds, axis=0))

@@ -9,6 +9,7 @@ from typing import Any
 
 from pneutouch.export.reader.reading import NOISES, QUIET, Status
 from pneutouch.spec.gauge import Gauge
+from pneutouch.wording import templates
 
 _BUS = "ABP2"
 """Order codes that begin so have the protocol of the sketch: command AA 00 00, 5 ms, seven bytes with pressure
@@ -47,7 +48,6 @@ NO_GAUGE = "no sketch: the design names no gauge, see pneumatics.gauge"
 
 
 HERE = Path(__file__).parent
-TEMPLATES = HERE / "templates"
 SCHEMA = HERE / "reader.schema.json"
 
 MOST_TABLES = 8192
@@ -112,18 +112,10 @@ def f32(value: float) -> str:
 
 
 def _rendered(template: str, record: Mapping[str, Any], **more: Any) -> bytes:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,  # program text; the names in it are those of files, which hold no markup
-    )
+    # Program text; the names in it are those of files, which hold no markup.
+    environment = templates(HERE / "templates", autoescape=False)
     environment.filters["f32"] = f32
-    return environment.get_template(template).render(record=record, **more).encode()
+    return environment.get_template(template).render(record=record, **more).encode() + b"\n"
 
 
 def _header(record: Mapping[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.meridian import Segment
-from pneutouch.wording import rounded
+from pneutouch.wording import rounded, templates
 
 TEXTS = Path(__file__).parent
 
@@ -210,38 +209,27 @@ def _moments(face: Sequence[Segment]) -> tuple[float, float, float]:
     return float(area), float(square), float(within)
 
 
-_XML_DIGITS = 9
+_DIGITS = 9
 
 _NOTHING = 1e-15
 """Coordinates (m) and moments (kg m2) below this are rounding, and written as 0."""
 
 
-def add(parent: ElementTree.Element, tag: str, **attributes: str | float) -> ElementTree.Element:
-    """Add an element with attributes, numbers as text."""
-    texts = {key: value if isinstance(value, str) else number_text(value) for key, value in attributes.items()}
-    return ElementTree.SubElement(parent, tag, texts)
+def _number(value: float) -> str:
+    return f"{float(value):.{_DIGITS}g}"
 
 
-def number_text(value: float) -> str:
-    """A number as text with nine significant digits."""
-    return f"{float(value):.{_XML_DIGITS}g}"
-
-
-def vector(values: Iterable[Any]) -> str:
+def _vector(values: Iterable[float]) -> str:
     """Numbers as text with spaces between, those within `_NOTHING` of zero as 0."""
-    return " ".join(number_text(value if abs(value) > _NOTHING else 0.0) for value in values)
+    return " ".join(_number(value if abs(value) > _NOTHING else 0.0) for value in values)
 
 
-def xml_document(root: ElementTree.Element) -> bytes:
-    """An XML document, indented, as UTF-8."""
-    ElementTree.indent(root)
-    return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
-
-
-_DIGITS = 9
-
-_CONTACT = {"solref": f"{2 * _TIME_STEP:g} 1", "solimp": "0.9999 0.9999 0.001"}
-"""Contact as stiff as the time step allows, and nearly rigid: the joint yields instead."""
+def _filled(template: str, sensor: SimulatedSensor, **more: Any) -> bytes:
+    """An XML document of a sensor without driving pressure and force."""
+    environment = templates(TEXTS / "templates", autoescape=True)
+    environment.filters |= {"number": _number, "vector": _vector}
+    values = {"name": sensor.name, "sensor": sensor, "table": sensor.tables[0], **more}
+    return environment.get_template(template).render(values).encode() + b"\n"
 
 
 def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
@@ -285,47 +273,7 @@ def mjcf(sensor: SimulatedSensor) -> bytes:
 
     The inertia of both together is that of the bodies, without driving pressure and force.
     """
-    name, first = sensor.name, sensor.tables[0]
-    root = ElementTree.Element("mujoco", model=name)
-    add(root, "compiler", angle="radian", meshdir="meshes")
-    add(root, "option", timestep=_TIME_STEP)
-    assets = add(root, "asset")
-    for body in sensor.bodies:
-        add(assets, "mesh", name=f"{name}_{body.name}", file=f"{body.name}.stl", scale="0.001 0.001 0.001")
-    base = add(add(root, "worldbody"), "body", name=name)
-    _inertial(base, sensor.inertia.without(sensor.moving))
-    for body in sensor.bodies:
-        # The convex hull of the membrane would hold the dome, which moves.
-        contact = {"contype": 0, "conaffinity": 0, "group": 2} if body.role == "membrane" else {"group": 1}
-        add(base, "geom", name=f"{name}_{body.name}", type="mesh", mesh=f"{name}_{body.name}", **contact)
-    _dome(base, sensor, first)
-    # MuJoCo leaves out contacts with the parent, but not where that is fixed to the world.
-    add(add(root, "contact"), "exclude", body1=name, body2=f"{name}_dome")
-    outputs = add(root, "sensor")
-    add(outputs, "jointpos", name=f"{name}_indentation_m", joint=f"{name}_indentation")
-    for what in ("force_N", "pressure_kPa", "status"):
-        add(outputs, "user", name=f"{name}_{what}", dim=1, needstage="pos")
-    numbers = add(root, "custom")
-    add(numbers, "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
-    return xml_document(root)
-
-
-def _dome(base: ElementTree.Element, sensor: SimulatedSensor, table: PressTable) -> None:
-    name, centre = sensor.name, table.apex - sensor.radius
-    dome = add(base, "body", name=f"{name}_dome", pos=vector((0.0, 0.0, centre)))
-    moving = sensor.moving
-    at = (0.0, 0.0, float(moving.centre[2]) - centre)
-    add(dome, "inertial", pos=vector(at), mass=moving.mass, diaginertia=vector(moving.about_centre.diagonal()))
-    joint = f"{name}_indentation"
-    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature)
-    add(dome, "geom", name=f"{name}_dome", type="sphere", size=sensor.radius, rgba="0.3 0.5 0.7 0.5", **_CONTACT)
-    add(dome, "site", name=f"{name}_contact", pos=vector((0.0, 0.0, sensor.radius)), size="0.0005")
-
-
-def _inertial(body: ElementTree.Element, inertia: RigidInertia) -> None:
-    tensor = inertia.about_centre
-    full = [tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
-    add(body, "inertial", pos=vector(inertia.centre), mass=inertia.mass, fullinertia=vector(full))
+    return _filled("mjcf.xml.j2", sensor, step=_TIME_STEP, base=sensor.inertia.without(sensor.moving))
 
 
 def urdf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
@@ -344,26 +292,4 @@ def hull(body: Body) -> Body:
 
 def urdf(sensor: SimulatedSensor) -> bytes:
     """One link in the frame of the base plane, z outwards, and two frames fixed to it: its mount and its apex."""
-    root = ElementTree.Element("robot", name=sensor.name)
-    link = add(root, "link", name=sensor.name)
-    inertial = add(link, "inertial")
-    add(inertial, "origin", xyz=vector(sensor.inertia.centre), rpy="0 0 0")
-    add(inertial, "mass", value=sensor.inertia.mass)
-    tensor = sensor.inertia.about_centre
-    moments = {f"i{'xyz'[i]}{'xyz'[j]}": vector([tensor[i, j]]) for i in range(3) for j in range(i, 3)}
-    add(inertial, "inertia", **moments)
-    for tag, suffix in (("visual", ""), ("collision", "-contact")):
-        for body in sensor.bodies:
-            element = add(link, tag, name=f"{body.name}{suffix}")
-            add(element, "origin", xyz="0 0 0", rpy="0 0 0")
-            file = f"meshes/{body.name}{suffix}.stl"
-            add(add(element, "geometry"), "mesh", filename=file, scale="0.001 0.001 0.001")
-    frames = {"mount": sensor.rear, "contact": sensor.tables[0].apex}
-    for what, height in frames.items():
-        frame = f"{sensor.name}_{what}"
-        add(root, "link", name=frame)
-        joint = add(root, "joint", name=f"{frame}_fixed", type="fixed")
-        add(joint, "parent", link=sensor.name)
-        add(joint, "child", link=frame)
-        add(joint, "origin", xyz=vector((0.0, 0.0, height)), rpy="0 0 0")
-    return xml_document(root)
+    return _filled("urdf.xml.j2", sensor)
