@@ -17,7 +17,7 @@ from pneutouch.parts.cast_ring import RING
 from pneutouch.report.pictures import grade_colours
 from pneutouch.report.style import INK, MUTED, figure, svg
 from pneutouch.shape.dome import DomeShape
-from pneutouch.spec.part import Barb, Luer, PushIn, Thread
+from pneutouch.spec.part import Barb, Luer, Thread
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -207,31 +207,3 @@ def port_note(scene: ResolvedDesign) -> str:
     if isinstance(port, Luer):
         return f"Luer lock\nØ{port.opening_diameter + wider:.4g}, {port.taper:.0%}"
     return f"Ø{scene.tube.outer_diameter + wider:.4g}\n{port.depth:g} deep"
-
-
-def port_steps(scene: ResolvedDesign) -> str:
-    """Sentences on how to clean and connect the port."""
-    port, tube = scene.port, scene.tube
-    size = f"{tube.outer_diameter:g} x {tube.inner_diameter:g} mm"
-    if isinstance(port, Barb):
-        behind = (
-            f"; the mounting surface needs a hole of at least {tube.outer_diameter + 1:g} mm for it"
-            if scene.mount.port_side == "rear"
-            else ""
-        )
-        return (
-            f"Port: push a {port.bore_diameter:g} mm drill or wire through the bore. Push {size} soft tube over the "
-            f"barb{behind}."
-        )
-    if isinstance(port, Thread):
-        return (
-            f"Port: drill the core hole to {port.core_diameter:g} mm, tap {port.thread}; screw the fitting in by hand "
-            "until its gasket lies on the face."
-        )
-    if isinstance(port, Luer):
-        return (
-            "Port: clear the cone of support; check with a male Luer lock that it grips by the cone before the lock "
-            "bottoms."
-        )
-    assert isinstance(port, PushIn)
-    return f"Port: push {size} tube in to the stop, {port.depth:g} mm deep, and glue it in."
