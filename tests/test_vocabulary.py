@@ -53,7 +53,8 @@ def test_a_dropped_word_is_seen_in_names_and_texts(text, found):
 
 def test_dropped_words_stand_nowhere():
     pages = [path for path in (ROOT / "docs").rglob("*.md") if "generated" not in path.parts and path != VOCABULARY]
-    paths = [*PACKAGE.rglob("*.py"), *pages, ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+    texts_of_sheets = [path for ending in ("j2", "toml") for path in PACKAGE.rglob(f"*.{ending}")]
+    paths = [*PACKAGE.rglob("*.py"), *texts_of_sheets, *pages, ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
     texts = {path: f"{path.stem}\n{path.read_text()}" for path in paths}
     found = {str(path.relative_to(ROOT)): words for path, text in texts.items() if (words := words_in(text))}
     assert not found

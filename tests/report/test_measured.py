@@ -12,12 +12,12 @@ import pytest
 from pneutouch.bench.figures import FIGURES, run_figures
 from pneutouch.bench.record import SuspectInterval
 from pneutouch.report.blocks import FramedBlocks, Heading, Plot, SheetTable, found
-from pneutouch.report.measured import tables
 from pneutouch.report.measured.plots import loops, opened, responses
 from pneutouch.report.measured.sheet import described, measured_datasheet, tiles, whole_verdict
 from pneutouch.report.measured.tables import MOST, groups_of, lists, resin_section, specimen_section
 from pneutouch.report.numbers import MINUS, between, difference, number, signed
 from pneutouch.report.pages import html
+from pneutouch.report.prose import WORDS
 from pneutouch.results.measured import Verdict
 
 from .campaign import INJECTIONS, RESINS, VERDICTS, measured_of
@@ -91,7 +91,9 @@ def test_there_is_every_section_resin_and_plot(sheet):
 def test_every_figure_stands_on_the_sheet_with_its_meaning(sheet):
     rows = table_under(sheet, "Definitions").rows
     for figure in FIGURES:
-        assert any(row[0].startswith(figure.name) and row[1] == tables.LINES_OF[figure.key] for row in rows)
+        assert any(
+            row[0].startswith(figure.name) and row[1] == WORDS["measured"]["definitions"][figure.key] for row in rows
+        )
 
 
 def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, sheet):
@@ -183,7 +185,7 @@ def test_ageing_stands_beside_the_papers(library):
     aged = measured_of(library, resins=("TangoPlus",), runs=1, kinds=("steps",), ages=(0.0, 365.0))
     sheet = described(aged)
     (table,) = [
-        table for table in found(sheet.blocks, SheetTable) if table.head[:1] == ("Resin",) and len(table.head) == 6
+        table for table in found(sheet.blocks, SheetTable) if table.head[:1] == ["Resin"] and len(table.head) == 6
     ]
     assert table.rows[0][2:] == ["12 months", f"{MINUS}9.1", f"{MINUS}15.0 to {MINUS}3.2", "± 14.8"]
     assert ["Ages", "fresh and 12 months"] in table_under(sheet, "Conditions").rows
@@ -246,7 +248,7 @@ def test_tiles_name_the_worst_group(campaign):
 def test_docs_define_every_figure_with_its_key(root):
     text = (root / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
     section = text[text.index("## Definitions") :]
-    assert set(tables.LINES_OF) == {figure.key for figure in FIGURES}
+    assert set(WORDS["measured"]["definitions"]) == {figure.key for figure in FIGURES}
     for figure in FIGURES:
         row = next(line for line in section.splitlines() if f"`{figure.key}`" in line)
         cells = re.split(r"(?<!\\)\|", row)[1:-1]

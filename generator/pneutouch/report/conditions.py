@@ -9,6 +9,7 @@ from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
 from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH
+from pneutouch.report.prose import WORDS
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
 
@@ -127,49 +128,13 @@ def _values(numbers: Sequence[float | None], form: str, unit: str) -> str:
     return f"{' and '.join(texts)} {unit}"
 
 
-_OFF_AXIS = (
-    "Driving\nkPa",
-    "Indentation\nmm",
-    "Force\nN",
-    "Sideways force\nN",
-    "Moment\nN mm",
-    "Harmonics\nto order",
-    "Last change\n%",
-)
-
-_OFF_AXIS_NOTE = (
-    "At the end of the range, of the dome on the object: the sideways force in the plane of symmetry, positive towards "
-    "the offset or the side on which a plate rises; the moment about the centre of the base plane. The last raise of "
-    "the harmonics changed sensitivity, force or pressure rise by the last change at most; the sideways force settles "
-    "later than these."
-)
-
-_SHEAR = (
-    "Driving\nkPa",
-    "Moved to\nmm",
-    "Force\nN",
-    "Sideways force\nN",
-    "Moment\nN mm",
-    "Pressure rise\nkPa",
-    "Greatest sideways force\nN",
-    "Slips throughout from\nmm",
-)
-
-_SHEAR_NOTE = (
-    "The object moves sideways at the depth that it was pressed to. At the end of that travel, of the dome on the "
-    "object: force, sideways force and moment as above, and the pressure rise; the sideways force where it is greatest "
-    "against the travel; the first computed travel at which every point of the contact slides."
-)
-
-
 def off_axis(states: tuple[SensorState, ...]) -> list[SheetBlock]:
     """Tables on contact off the axis and on an object that then moves sideways; none without such contact."""
     blocks: list[SheetBlock] = []
-    tables = (_off_axis_rows(states), _OFF_AXIS, _OFF_AXIS_NOTE), (shear_rows(states), _SHEAR, _SHEAR_NOTE)
-    for rows, head, words in tables:
+    for rows, words in ((_off_axis_rows(states), WORDS["off_axis"]), (shear_rows(states), WORDS["shear"])):
         if rows:
-            columns = range(len(head))
-            blocks += [SheetTable(rows, head, numeric=columns, turned=True), Text(words, "muted")]
+            columns = range(len(words["head"]))
+            blocks += [SheetTable(rows, words["head"], numeric=columns, turned=True), Text(words["note"], "muted")]
     return blocks
 
 
@@ -209,17 +174,6 @@ def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
     return rows
 
 
-_CAPTION = (
-    "The fraction of the stiff resin is printed exactly; its modulus is assumed. The published characterizations of "
-    "such mixes differ, and none is of these two resins: each column predicts this design if its curve is true "
-    "(docs/background/mixing.md). A curve measured on coupons of the printer in use replaces all of them."
-)
-_BEYOND = (
-    "{curves}: the wall holds more of the stiff resin than this curve covers. The column takes its "
-    "stiffest; the wall may be rigid there."
-)
-
-
 def mixing_section(sheet: SheetData) -> list[SheetBlock]:
     """Section on the design by each of its mixing curves, a column each, softest first; none without curves."""
     curves = sheet.curves
@@ -232,7 +186,8 @@ def mixing_section(sheet: SheetData) -> list[SheetBlock]:
         rows.append([f"Force range {at}", *map(_range, states), "N"])
     rows.append(["Rated pressure", *map(_rated, curves), "kPa"])
     beyond = ", ".join(one.by_curve.curve for one in curves if one.by_curve.beyond)
-    lines = [_CAPTION, *([_BEYOND.format(curves=beyond)] if beyond else [])]
+    words = WORDS["mixing"]
+    lines = [words["caption"], *([words["beyond"].format(curves=beyond)] if beyond else [])]
     blocks = (SheetTable(rows, head, numeric=range(1, len(head) - 1)), Items(lines)) if curves else ()
     return section("By every mixing curve", *blocks)
 

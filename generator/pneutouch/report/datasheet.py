@@ -118,7 +118,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
     return section(
         "Performance",
         sheet_tables.performance(sheet),
-        Text(prose.PERFORMANCE, "muted"),
+        Text(prose.WORDS["performance"]["note"], "muted"),
         Items(sheet_tables.quiet_events(sheet)),
         *sheet_tables.as_drawn(sheet),
         *sheet_tables.filled(sheet),
@@ -174,7 +174,7 @@ def _making(sheet: SheetData) -> list[SheetBlock]:
 
 def _use(sheet: SheetData, date: str) -> list[SheetBlock]:
     """Blocks on reliability, ordering, measuring and handling, then on what the figures rest on."""
-    untested = SheetTable([[what, conditions.NOT_TESTED] for what in prose.RELIABILITY])
+    untested = SheetTable([[what, conditions.NOT_TESTED] for what in prose.WORDS["datasheet"]["reliability"]])
     revisions = SheetTable(
         [[sheet.scene.design.document.revision, date, "As predicted; first issue of this revision."]]
     )
@@ -191,10 +191,10 @@ def _use(sheet: SheetData, date: str) -> list[SheetBlock]:
         Columns(
             (
                 section("How to measure it", Items(prose.method(sheet.scene), numbered=True)),
-                section("Handling", Items(prose.HANDLING)),
+                section("Handling", Items(prose.WORDS["datasheet"]["handling"])),
             )
         ),
         *section("Assumptions of the prediction", Items(sheet.prediction.assumptions)),
-        *section("Definitions", SheetTable(prose.DEFINITIONS)),
+        *section("Definitions", SheetTable(prose.WORDS["datasheet"]["definitions"])),
         *section("Sources of the resin's numbers", SheetTable(sheet_tables.sources(sheet))),
     ]

@@ -1,60 +1,16 @@
 """The sentences of a datasheet: fixed ones, and those filled in from the design."""
 
+import tomllib
 from math import isfinite
+from pathlib import Path
+from typing import Any
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.contact import ContactTable
 from pneutouch.wording import SIMULATED, counted
 
-PAPER = (
-    "He, Herzig, Nanayakkara, Maiolino: 3D-printed soft sensors for adaptive sensing with online and offline "
-    "tunable-stiffness. Soft Robotics, DOI 10.1089/soro.2021.0074"
-)
-
-LIMITS_OF_USE = (
-    "Laboratory use. Not a safety component; not for fluids other than clean dry air; not for contact with "
-    "food or wounds."
-)
-
-RELIABILITY = (
-    "Cycles to failure",
-    "Tear under edge contact",
-    "Leak rate of the joints",
-    "Storage life",
-    "Drop and shock",
-)
-
-HANDLING = (
-    "The figures assume a rim that does not move: glue or clamp the flange all round.",
-    "Leak test before first use: hold the highest driving pressure, at most the rated one, for ten minutes.",
-    "Condition with five full-depth indentations before calibrating; re-zero after every change of driving pressure.",
-    "Reset the driving pressure often: a sealed cavity drifts with temperature.",
-    "Clean with water and mild soap. Keep from solvents, sunlight and sharp edges.",
-)
-
-PERFORMANCE = (
-    "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see Uncertainty. "
-    "Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one. "
-    "*: above the rated driving pressure."
-)
-
-DEFINITIONS = (
-    [
-        "Sensitivity S",
-        "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume "
-        "and range",
-    ],
-    [
-        "k = 2",
-        "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where "
-        "many sources add up",
-    ],
-    ["Force range", "from first contact to the first event that ends the range, or to the stated depth"],
-    ["Non-linearity", "greatest distance from that line over the full-scale pressure rise"],
-    ["Stiffness", "mean slope of force over indentation in the range"],
-    ["Apex height", "above the base plane; inside and outside differ by the thinned wall"],
-    ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
-)
+WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))
+"""Fixed sentences, and heads of tables, by the part of a sheet in which they stand."""
 
 
 def front_error(errors: tuple[float, float]) -> str:
@@ -110,7 +66,8 @@ def limits_of_use(scene: ResolvedDesign) -> str:
     contact = scene.design.contact
     body = "flat rigid body" if contact.is_plate else presser(scene)
     hold = f" ({contact.hold})" if contact.friction else ""
-    return f"{LIMITS_OF_USE} The figures hold for slow, {contact.kind_of_place} contact with a {body}{hold}."
+    use = WORDS["datasheet"]["limits_of_use"]
+    return f"{use} The figures hold for slow, {contact.kind_of_place} contact with a {body}{hold}."
 
 
 def method(scene: ResolvedDesign) -> tuple[str, ...]:

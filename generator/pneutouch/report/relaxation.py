@@ -7,23 +7,11 @@ from pneutouch.evaluation.sheet_data import AgeingData, SheetData
 from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
 from pneutouch.report.chart import Panel, PlotLine, drawn_svg
 from pneutouch.report.numbers import DASH
+from pneutouch.report.prose import WORDS
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED
 from pneutouch.results.behaviour import BySource, Viscous, WholeLoop
 from pneutouch.units import KPA
 
-HEAD = (
-    "Driving\nkPa",
-    "Data",
-    "Force, 1 to 600 s\n%",
-    "Pressure rise\n%",
-    "per decade\n%",
-    "Hysteresis, slow\n% of full scale",
-    "Hysteresis, quick\n% of full scale",
-)
-_CONTACT_LOST = (
-    "The dome returns more slowly than the plate: contact is lost {:.1f} to {:.1f} mm before the plate is back, "
-    "and the loop ends there."
-)
 _TONES = (ACCENT, INK, MUTED)
 
 
@@ -38,7 +26,7 @@ def viscous_section(sheet: SheetData) -> list[SheetBlock]:
     return section(
         title,
         Plots([] if sheet.viscous_runs is None else _plots(viscous, sheet)),
-        SheetTable(cells, HEAD, numeric=(0, 2, 3, 4, 5, 6), turned=True),
+        SheetTable(cells, WORDS["relaxation"]["head"], numeric=(0, 2, 3, 4, 5, 6), turned=True),
         Items(_notes(viscous, rows)),
         ageing,
     )
@@ -115,7 +103,7 @@ def _notes(viscous: Viscous, rows: Sequence[tuple[float, int, BySource]]) -> lis
         "greatest difference in pressure rise at equal force over the full-scale rise.",
         *(f"{_letter(j)}: {source}." for j, source in enumerate(viscous.sources)),
         f"Model: {'; '.join(viscous.basis)}.",
-        *([_CONTACT_LOST.format(min(lost), max(lost))] if lost else []),
+        *([WORDS["relaxation"]["contact_lost"].format(min(lost), max(lost))] if lost else []),
         *([f"Not followed to the end. {'; '.join(ended)}."] if ended else []),
     ]
 

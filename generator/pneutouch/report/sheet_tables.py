@@ -15,20 +15,6 @@ from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.units import KPA, ML
 from pneutouch.wording import held_by
 
-_PERFORMANCE = (
-    "Driving\nkPa",
-    "Apex\ninside\nmm",
-    "Apex\noutside\nmm",
-    "Sensitivity\nkPa/N",
-    "k = 2\nkPa/N",
-    "Published\nkPa/N",
-    "R²",
-    "Non-linearity\n% FS",
-    "Stiffness\nN/mm",
-    "Force range\nN",
-    "Range ends at",
-)
-
 
 def key_figures(sheet: SheetData) -> list[Tile]:
     """The six tiles with the key figures on the first page, at the least driving pressure and the greatest rated."""
@@ -181,7 +167,7 @@ def performance(sheet: SheetData) -> SheetTable:
     """Table of performance, with one row per driving pressure."""
     pairs = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
     rows = [_state(sheet, state, interval(document) or DASH) for state, document in pairs]
-    return SheetTable(rows, _PERFORMANCE, numeric=range(10), turned=True)
+    return SheetTable(rows, prose.WORDS["performance"]["head"], numeric=range(10), turned=True)
 
 
 def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
@@ -241,7 +227,7 @@ def sources(sheet: SheetData) -> list[list[str]]:
         )
     accuracy = sheet.scene.printer.accuracy_mm
     return [
-        ["The paper", "", prose.PAPER],
+        ["The paper", "", prose.WORDS["datasheet"]["paper"]],
         *rows,
         [f"Accuracy of the {sheet.scene.printer.title}, mm", f"±{accuracy.nominal:g}", accuracy.source],
     ]

@@ -15,6 +15,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report.blocks import Cell, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH, Bounds, between, difference, number, overlap, signed, word_of
+from pneutouch.report.prose import WORDS
 from pneutouch.report.style import MARKERS
 from pneutouch.results.measured import AgeingChange, InjectionFigure, Verdict
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
@@ -139,36 +140,8 @@ MOST_SPECIMENS = 120
 _SHAPES = dict(zip(MARKERS, ("circle", "square", "triangle", "diamond", "triangle down", "plus", "cross"), strict=True))
 """Names of the markers of the plots."""
 
+_WORDS = WORDS["measured"]
 _NAMES = [figure.name for figure in FIGURES]
-
-_FIGURES = (
-    "Figure",
-    "Unit",
-    "Driving\nkPa",
-    "Age",
-    "Measured",
-    "95 % interval",
-    "n",
-    "Predicted",
-    "Predicted band",
-    "Difference\n%",
-    "Overlap",
-)
-
-_SPECIMENS = (
-    "Resin",
-    "Specimen",
-    "Marker",
-    "Driving\nkPa",
-    "Age",
-    "Runs",
-    "Sensitivity\nkPa/N",
-    "s\nkPa/N",
-    "Stiffness\nN/mm",
-    "s\nN/mm",
-)
-
-_AGEING = ("Resin", "Driving\nkPa", "Age", "Change\nof S\n%", "95 % interval\n%", "Paper,\none year\n%")
 
 
 def resin_section(groups: ResinGroups) -> list[SheetBlock]:
@@ -184,7 +157,7 @@ def resin_section(groups: ResinGroups) -> list[SheetBlock]:
     unknown = {b.group.key.driving_pressure_kPa: b.why for b in groups.comparisons if b.why}
     return section(
         f"Figures of {groups.label}",
-        SheetTable(rows, _FIGURES, numeric=(2, 4, 5, 6, 7, 8, 9), merged=2, dense=True),
+        SheetTable(rows, _WORDS["figures"], numeric=(2, 4, 5, 6, 7, 8, 9), merged=2, dense=True),
         Text(f"Not measured: {'; '.join(absent)}." if absent else "", "muted"),
         *(Text(f"No prediction at {pressure:g} kPa: {why}", "muted") for pressure, why in sorted(unknown.items())),
     )
@@ -219,7 +192,7 @@ def specimen_section(groups: Sequence[ResinGroups]) -> list[SheetBlock]:
                     marker = f"{k + 1}, {_SHAPES[MARKERS[k % len(MARKERS)]]}"
                     rows.append([group.label, sensor, marker, *_condition(comparison), *values])
     note = Text("s: standard deviation between the runs of the specimen.", "muted")
-    return _listed("Specimens", rows, _SPECIMENS, (3, 5, 6, 7, 8, 9), note, most=MOST_SPECIMENS, merged=3)
+    return _listed("Specimens", rows, _WORDS["specimens"], (3, 5, 6, 7, 8, 9), note, most=MOST_SPECIMENS, merged=3)
 
 
 def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
@@ -247,7 +220,7 @@ def ageing_table(measured: CampaignReport) -> SheetTable:
         if row.published_change_one_year_percent is not None:
             paper = f"± {row.published_change_one_year_percent:.3g}"
         rows.append([row.resin, at, row.age, change, ends, paper])
-    return SheetTable(rows, _AGEING, numeric=(1, 3, 4, 5), dense=True)
+    return SheetTable(rows, _WORDS["ageing"], numeric=(1, 3, 4, 5), dense=True)
 
 
 def lists(measured: CampaignReport) -> list[SheetBlock]:
@@ -297,53 +270,7 @@ def _listed(
     return section(title, SheetTable(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
 
 
-LINES_OF = {
-    SENSITIVITY_KEY: "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
-    "sensitivity_through_origin_kPa_per_N": "Slope of the least-squares line through the origin.",
-    "r_squared": "Share of the variance of the rise that the line with intercept explains.",
-    "nonlinearity_percent": "Greatest distance from that line over the full-scale rise.",
-    "repeatability_kPa_per_N": "Standard deviation of the sensitivity between runs of a specimen, pooled.",
-    "part_to_part_kPa_per_N": "Standard deviation of the specimens' mean sensitivities.",
-    STIFFNESS_KEY: "Force at the greatest depth over that depth.",
-    "force_range_N": "Greatest force of the sensitivity test, at its greatest depth.",
-    "saturation_force_N": "Force at which the local slope of rise over force falls below half the fitted one.",
-    "sensing_range_N": "Saturation force, or the greatest force reached where the sensor did not saturate.",
-    "hysteresis_width_percent": "Greatest difference in rise between loading and unloading, over the full-scale rise.",
-    "hysteresis_area_percent": "Area between loading and unloading over the area under loading.",
-    "relaxation_force_percent": "Loss of force from 1 s of the hold to its end, over the force at 1 s.",
-    "relaxation_force_percent_per_decade": "Slope of that loss over the decimal logarithm of time.",
-    "relaxation_pressure_percent": "Loss of pressure rise from 1 s of the hold to its end, over the rise at 1 s.",
-    "relaxation_pressure_percent_per_decade": "Slope of that loss over the decimal logarithm of time.",
-    "drift_pressure_kPa_per_min": "Slope of the pressure over time without contact.",
-    "noise_force_N": "Standard deviation of a force sample without contact, trend taken out.",
-    "noise_pressure_kPa": "Standard deviation of a pressure sample without contact, trend taken out.",
-    "resolution_N": "Three standard deviations of the pressure's noise over the sensitivity.",
-}
-"""Definitions of figures by key of `bench.figures.FIGURES`."""
-
-TERMS = (
-    (
-        "95 % interval",
-        "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other "
-        "specimens. Of a standard deviation: chi-square.",
-    ),
-    ("n", "Specimens / runs behind a value."),
-    (
-        "Predicted band",
-        "The interval that holds the figure of a printed sensor with 95 %, as the predicted datasheet states it.",
-    ),
-    ("Difference", "Measured less predicted, in percent of the predicted."),
-    (
-        "Overlap",
-        "Whether the measured interval and the predicted band share a value; a measured value without an interval "
-        "counts as itself. Empty where the prediction has no band.",
-    ),
-    ("Full scale", "Difference of the greatest and the least pressure rise of the run."),
-)
-"""Definitions of further words of the tables."""
-
-
 def definitions() -> SheetTable:
     """Table of definitions: of every figure, named with its unit, then of the tables' other words."""
-    named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
-    return SheetTable([*named, *TERMS])
+    named = [[f"{f.name}, {f.unit}" if f.unit else f.name, _WORDS["definitions"][f.key]] for f in FIGURES]
+    return SheetTable([*named, *_WORDS["terms"]])
