@@ -10,7 +10,7 @@ import typer
 from reference_pages import commands as pages
 
 from pneutouch.cli import commands
-from pneutouch.cli.app import DesignArgument, JsonOption, app, print_json, reporting
+from pneutouch.cli.app import DesignArgument, JsonOption, app, print_json
 from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
@@ -34,9 +34,8 @@ def _added(monkeypatch):
         json: JsonOption = False,
     ) -> None:
         """Multiply the wall of a design."""
-        with reporting():
-            wall_mm = wall_of(design, times)
-            print_json({"wall_mm": wall_mm}) if json else echo(f"{wall_mm:g} mm")
+        wall_mm = wall_of(design, times)
+        print_json({"wall_mm": wall_mm}) if json else echo(f"{wall_mm:g} mm")
 
     module = ModuleType("pneutouch.cli.wall_times")
     module.app = app

@@ -17,8 +17,7 @@ from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.complete import assignment, error_in_percent, names
 from pneutouch.cli.terminal import bar, echo, notify, open_closed_streams, put
-from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.stopping import refuse_stopped
+from pneutouch.errors import InputError
 
 app = typer.Typer(
     cls=Commands,
@@ -120,30 +119,6 @@ LeakOption = Annotated[
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design file of this name.")]
 
 
-@contextmanager
-def reporting() -> Iterator[None]:
-    """Turn errors of files and memory into the library's, and any other fault into a message and exit code 3."""
-    try:
-        yield
-    except (typer.Exit, PneutouchError):
-        raise
-    except OSError as error:
-        refuse_stopped()
-        # A name that no file can have, a folder that may not be read, a full disk: the system's own words.
-        raise InputError(error.strerror or str(error), file=error.filename) from None
-    except MemoryError:
-        raise ComputationError("not enough memory", remedy="ask for less at once, or close other programs") from None
-    except Exception as error:
-        refuse_stopped()
-        if os.environ.get("PNEUTOUCH_DEBUG"):
-            raise
-        notify(
-            f"error: internal fault ({type(error).__name__}: {error}); please report it with the design file. "
-            "PNEUTOUCH_DEBUG=1 shows where"
-        )
-        raise typer.Exit(3) from None
-
-
 def _version(requested: bool) -> None:
     if requested:
         echo(f"pneutouch {__version__}")
@@ -185,39 +160,38 @@ def predict(
     json: JsonOption = False,
 ) -> None:
     """Predict the figures and their uncertainty, or the driving pressure that gives one (--for)."""
-    with reporting():
-        if for_ or tasks is not None:
-            from pneutouch.cli.driving import report_driving
-            from pneutouch.mechanics.models.choice import model_options
-
-            if monte_carlo:
-                raise InputError("cannot be given with `for_` or `tasks`", key="monte_carlo", value=monte_carlo)
-            options = {"closure": closure, "clamp": clamp, "aged": aged, **model_options(model or "auto", tolerance)}
-            fields, words = changes(set_, calibration, anywhere=anywhere), (set_, calibration)
-            report_driving(design, fields, for_ or [], tasks, leak, words, json=json, **options)
-            return
-        if leak is not None:
-            raise InputError("needs `for_` or `tasks`", key="leak", value=str(leak))
-        from pneutouch.evaluation.evaluate import evaluate
-        from pneutouch.evaluation.result import predicted_in_full
+    if for_ or tasks is not None:
+        from pneutouch.cli.driving import report_driving
         from pneutouch.mechanics.models.choice import model_options
 
-        evaluation = evaluate(
-            design,
-            changes(set_, calibration, anywhere=anywhere),
-            closure=closure,
-            clamp=clamp,
-            aged=aged,
-            **model_options(model, tolerance),
-        )
-        with bar("predicting"):
-            prediction = predicted_in_full(evaluation, monte_carlo)
-        if json:
-            print_json(prediction)
-        else:
-            from pneutouch.cli.prediction_text import prediction_text
+        if monte_carlo:
+            raise InputError("cannot be given with `for_` or `tasks`", key="monte_carlo", value=monte_carlo)
+        options = {"closure": closure, "clamp": clamp, "aged": aged, **model_options(model or "auto", tolerance)}
+        fields, words = changes(set_, calibration, anywhere=anywhere), (set_, calibration)
+        report_driving(design, fields, for_ or [], tasks, leak, words, json=json, **options)
+        return
+    if leak is not None:
+        raise InputError("needs `for_` or `tasks`", key="leak", value=str(leak))
+    from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.evaluation.result import predicted_in_full
+    from pneutouch.mechanics.models.choice import model_options
 
-            echo(prediction_text(prediction))
+    evaluation = evaluate(
+        design,
+        changes(set_, calibration, anywhere=anywhere),
+        closure=closure,
+        clamp=clamp,
+        aged=aged,
+        **model_options(model, tolerance),
+    )
+    with bar("predicting"):
+        prediction = predicted_in_full(evaluation, monte_carlo)
+    if json:
+        print_json(prediction)
+    else:
+        from pneutouch.cli.prediction_text import prediction_text
+
+        echo(prediction_text(prediction))
 
 
 @app.command("list")
@@ -231,19 +205,15 @@ def list_(
     json: JsonOption = False,
 ) -> None:
     """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
-    with reporting():
-        from pneutouch.catalogue.listing import listing
-        from pneutouch.cli.prediction_text import listing_text
+    from pneutouch.catalogue.listing import listing
+    from pneutouch.cli.prediction_text import listing_text
 
-        content = listing(kind)
-        if json:
-            print_json(content)
-        else:
-            echo(listing_text(content))
-        broken = [entry["file"] for entries in content.values() for entry in entries if "error" in entry]
-        if broken:
-            remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
-            raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
+    content = listing(kind)
+    print_answer(content, listing_text, json=json)
+    broken = [entry["file"] for entries in content.values() for entry in entries if "error" in entry]
+    if broken:
+        remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
+        raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
 
 
 def design_folder(out: Path | None) -> Path:
@@ -279,12 +249,12 @@ def print_json(document: Any) -> None:
     put(json_bytes(plain(document)).decode())
 
 
-def print_written(record: Any, folder: Path, text: Callable[[Any], str], *, json: bool) -> None:
-    """Print a record of a folder that was written, with the folder: as JSON, or as ``text`` returns it."""
+def print_answer(record: Any, text: Callable[[Any], str], folder: Path | None = None, *, json: bool) -> None:
+    """Print a record, with the folder that it was written to if there is one: as JSON, or as ``text`` returns it."""
     if json:
-        print_json(replace(record, folder=str(folder)))
+        print_json(record if folder is None else replace(record, folder=str(folder)))
     else:
-        echo(f"{text(record)}\n\n{folder}")
+        echo(text(record) if folder is None else f"{text(record)}\n\n{folder}")
 
 
 _BREAKS = "=@:"

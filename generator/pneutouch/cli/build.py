@@ -10,23 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    AnywhereOption,
-    CalibrationOption,
-    ClampOption,
-    ClosureOption,
-    DesignArgument,
-    JsonOption,
-    ModelOption,
-    OutOption,
-    SetOption,
-    ToleranceOption,
-    app,
-    changes,
-    print_json,
-    refuse_flags,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words
 
@@ -52,7 +36,7 @@ VoxelModeOption = Annotated[
 ]
 
 
-@app.command()
+@cli.app.command()
 def build(
     context: typer.Context,
     design: Annotated[
@@ -63,100 +47,98 @@ def build(
             autocompletion=names("designs", "specimens"),
         ),
     ],
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
-    model: ModelOption = None,
-    tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational",
-    clamp: ClampOption = "base",
-    anywhere: AnywhereOption = False,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
+    model: cli.ModelOption = None,
+    tolerance: cli.ToleranceOption = None,
+    closure: cli.ClosureOption = "variational",
+    clamp: cli.ClampOption = "base",
+    anywhere: cli.AnywhereOption = False,
     name: Annotated[
         str | None, typer.Option(help="Name of the output folder and its files.", show_default="the design's")
     ] = None,
-    out: OutOption = Path("outputs"),
+    out: cli.OutOption = Path("outputs"),
     voxels: VoxelsOption = False,
     voxel_mode: VoxelModeOption = None,
-    json: JsonOption = False,
+    json: cli.JsonOption = False,
 ) -> None:
     """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
-    with reporting():
-        stack: Path | None = None
-        if _is_specimen(design):
-            flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
-            refuse_flags(context, flags, "a specimen, which has no prediction", design)
-            refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            folder, findings = _build_specimen(design, out, changes(set_, calibration), name)
-        else:
-            evaluation = (
-                _from_3mf(design, context, name)
-                if _is_3mf(design)
-                else _evaluated(
-                    design,
-                    changes(set_, calibration, anywhere=anywhere),
-                    model,
-                    tolerance,
-                    name=name or _calibrated_name(design, changes(set_, calibration)),
-                    closure=closure,
-                    clamp=clamp,
-                )
+    stack: Path | None = None
+    if _is_specimen(design):
+        flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
+        cli.refuse_flags(context, flags, "a specimen, which has no prediction", design)
+        cli.refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
+        folder, findings = _build_specimen(design, out, cli.changes(set_, calibration), name)
+    else:
+        evaluation = (
+            _from_3mf(design, context, name)
+            if _is_3mf(design)
+            else _evaluated(
+                design,
+                cli.changes(set_, calibration, anywhere=anywhere),
+                model,
+                tolerance,
+                name=name or _calibrated_name(design, cli.changes(set_, calibration)),
+                closure=closure,
+                clamp=clamp,
             )
-            plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
-            folder, findings = _build_sensor(evaluation, out)
-            stack = None if plan is None else _write_voxels(plan, evaluation, out)
-        _report(findings, folder)
-        if json:
-            print_json({"design": folder.name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
-        else:
-            echo(str(folder))
-            if stack is not None:
-                echo(str(stack))
-            if not _is_specimen(design) and not _is_3mf(design):
-                report_next("plan", design, *set_words(set_, calibration))
+        )
+        plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
+        folder, findings = _build_sensor(evaluation, out)
+        stack = None if plan is None else _write_voxels(plan, evaluation, out)
+    _report(findings, folder)
+    if json:
+        cli.print_json({"design": folder.name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
+    else:
+        echo(str(folder))
+        if stack is not None:
+            echo(str(stack))
+        if not _is_specimen(design) and not _is_3mf(design):
+            report_next("plan", design, *set_words(set_, calibration))
 
 
-@app.command()
+@cli.app.command()
 def check(
     context: typer.Context,
-    design: DesignArgument,
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
+    design: cli.DesignArgument,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
     deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
     voxels: Annotated[bool, typer.Option("--voxels", help="Check the limits of a voxel stack as well.")] = False,
-    json: JsonOption = False,
+    json: cli.JsonOption = False,
 ) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
-    with reporting():
-        if _is_specimen(design):
-            from pneutouch.workflows.specimen.build import check_specimen
+    if _is_specimen(design):
+        from pneutouch.workflows.specimen.build import check_specimen
 
-            refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            curves: tuple[Any, ...] = ()
-            with bar("checking the specimen"):
-                findings = check_specimen(design, changes(set_, calibration), deep=deep)
-        else:
-            from pneutouch.evaluation.result import by_mixing_curve
+        cli.refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
+        curves: tuple[Any, ...] = ()
+        with bar("checking the specimen"):
+            findings = check_specimen(design, cli.changes(set_, calibration), deep=deep)
+    else:
+        from pneutouch.evaluation.result import by_mixing_curve
 
-            evaluation = _evaluated(design, changes(set_, calibration))
-            with bar("checking printability and limits"):
-                findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
-                curves = by_mixing_curve(evaluation.curves)
-                if voxels:
-                    from pneutouch.workflows.build_voxels import plan_voxels
+        evaluation = _evaluated(design, cli.changes(set_, calibration))
+        with bar("checking printability and limits"):
+            findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
+            curves = by_mixing_curve(evaluation.curves)
+            if voxels:
+                from pneutouch.workflows.build_voxels import plan_voxels
 
-                    findings += plan_voxels(evaluation.assembly).findings
-        broken = any(finding.severity == "error" for finding in findings)
-        if json:
-            by_curve = {"mixing_curves": curves} if curves else {}
-            listed = [f.stated for f in findings]
-            print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
-        else:
-            from pneutouch.cli.prediction_text import finding_line
+                findings += plan_voxels(evaluation.assembly).findings
+    broken = any(finding.severity == "error" for finding in findings)
+    if json:
+        by_curve = {"mixing_curves": curves} if curves else {}
+        listed = [f.stated for f in findings]
+        cli.print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
+    else:
+        from pneutouch.cli.prediction_text import finding_line
 
-            echo("\n".join(f"{finding_line(one)}  [{one.source}]" for one in findings) or "no findings")
-            if not broken:
-                report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
-        if broken:
-            raise typer.Exit(1)
+        echo("\n".join(f"{finding_line(one)}  [{one.source}]" for one in findings) or "no findings")
+        if not broken:
+            report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
+    if broken:
+        raise typer.Exit(1)
 
 
 def _evaluated(
@@ -258,7 +240,7 @@ def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation
     from pneutouch.spec.values import plain_name
 
     why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
-    refuse_flags(context, _FLAGS, why, file)
+    cli.refuse_flags(context, _FLAGS, why, file)
     package = read_threemf(Path(file))
     recipe = read_recipe(package)
     other = other_versions(package, recipe)

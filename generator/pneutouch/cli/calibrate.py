@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, app, print_json
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
@@ -37,27 +37,26 @@ def calibrate(
     **fields: Any,
 ) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
-    with reporting():
-        from pneutouch.workflows.calibrate.calibrate import run_calibration
-        from pneutouch.workflows.characterize.load import reading_text
+    from pneutouch.workflows.calibrate.calibrate import run_calibration
+    from pneutouch.workflows.characterize.load import reading_text
 
-        asked = given(CalibrationOptions, fields)
-        with bar("reading runs", unit="MB") as progress:
-            outcome = run_calibration(data, design, asked, out, progress=progress, reading=reading_of(columns, fields))
-        record = outcome.record
-        if record.read_as:
-            notify(reading_text(record.read_as))
-        if json:
-            print_json(record)
-        else:
-            echo(calibration_text(record))
-            uncalibrated, name = outcome.design_given, record.calibration
-            words = ("compare", uncalibrated, f"{uncalibrated}@{name}") if name else ("predict", uncalibrated)
-            report_next(*words, *set_words(outcome.assignments))
-        if record.failures:
-            raise typer.Exit(3)
-        if record.calibration is None:
-            raise typer.Exit(1)
+    asked = given(CalibrationOptions, fields)
+    with bar("reading runs", unit="MB") as progress:
+        outcome = run_calibration(data, design, asked, out, progress=progress, reading=reading_of(columns, fields))
+    record = outcome.record
+    if record.read_as:
+        notify(reading_text(record.read_as))
+    if json:
+        print_json(record)
+    else:
+        echo(calibration_text(record))
+        uncalibrated, name = outcome.design_given, record.calibration
+        words = ("compare", uncalibrated, f"{uncalibrated}@{name}") if name else ("predict", uncalibrated)
+        report_next(*words, *set_words(outcome.assignments))
+    if record.failures:
+        raise typer.Exit(3)
+    if record.calibration is None:
+        raise typer.Exit(1)
 
 
 def calibration_text(record: "OutcomeRecord") -> str:

@@ -7,16 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    JsonOption,
-    OutOption,
-    SetOption,
-    app,
-    changes,
-    print_written,
-    reporting,
-)
+from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_answer
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_words, with_fields
@@ -78,31 +69,30 @@ def characterize(
     **fields: Any,
 ) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
-    with reporting():
-        from pneutouch.mechanics.models.choice import USUAL
-        from pneutouch.workflows.characterize.campaign import characterize as run
-        from pneutouch.workflows.characterize.campaign import write
-        from pneutouch.workflows.characterize.load import reading_text, same_failures
+    from pneutouch.mechanics.models.choice import USUAL
+    from pneutouch.workflows.characterize.campaign import characterize as run
+    from pneutouch.workflows.characterize.campaign import write
+    from pneutouch.workflows.characterize.load import reading_text, same_failures
 
-        _check(evidence, kind)
-        with bar("reading runs", unit="MB") as progress:
-            given, reading = changes(set_, calibration), reading_of(columns, fields)
-            how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
-            outcome = run(data, design, given, progress=progress, **how)
-        folder = write(outcome, out, evidence)
-        named = partial(option, context.command)
-        print_written(outcome.figures, folder, partial(measured_text, named=named), json=json)
-        if outcome.read_as:
-            notify(reading_text(outcome.read_as))
-        for files, message in same_failures(outcome.measured.failures):
-            words = InputError(message).message(named)
-            notify(f"error: {files}: not used: {words}")
-        if outcome.failed:
-            raise typer.Exit(3)
-        if outcome.missed:
-            raise typer.Exit(1)
-        if not json and (data.is_dir() or data.suffix == ".toml"):
-            _report_next(outcome, data, folder, design, set_, reading_words(columns, fields))
+    _check(evidence, kind)
+    with bar("reading runs", unit="MB") as progress:
+        given, reading = changes(set_, calibration), reading_of(columns, fields)
+        how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
+        outcome = run(data, design, given, progress=progress, **how)
+    folder = write(outcome, out, evidence)
+    named = partial(option, context.command)
+    print_answer(outcome.figures, partial(measured_text, named=named), folder, json=json)
+    if outcome.read_as:
+        notify(reading_text(outcome.read_as))
+    for files, message in same_failures(outcome.measured.failures):
+        words = InputError(message).message(named)
+        notify(f"error: {files}: not used: {words}")
+    if outcome.failed:
+        raise typer.Exit(3)
+    if outcome.missed:
+        raise typer.Exit(1)
+    if not json and (data.is_dir() or data.suffix == ".toml"):
+        _report_next(outcome, data, folder, design, set_, reading_words(columns, fields))
 
 
 def _check(evidence: str, kind: str | None) -> None:

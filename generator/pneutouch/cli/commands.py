@@ -1,5 +1,6 @@
 """The commands by groups, and how a command is found, run and ended."""
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -12,7 +13,7 @@ from typer.main import get_command_from_info
 
 from pneutouch.cli.stop import stopped
 from pneutouch.cli.terminal import notify
-from pneutouch.errors import InputError, PneutouchError, nearest, one_line
+from pneutouch.errors import ComputationError, InputError, PneutouchError, nearest, one_line
 from pneutouch.spec.values import plain_number
 from pneutouch.stopping import refuse_stopped
 
@@ -100,8 +101,8 @@ class Commands(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of a name, whose module is imported; None if there is none."""
         if cmd_name in _entries() and cmd_name not in self.commands:
-            module = import_module(f"pneutouch.cli.{_entries()[cmd_name].module}")
-            infos = module.app.registered_commands
+            import_module(f"pneutouch.cli.{_entries()[cmd_name].module}")
+            infos = import_module("pneutouch.cli.app").app.registered_commands
             (info,) = (one for one in infos if (one.name or one.callback.__name__) == cmd_name)
             self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
         command = super().get_command(ctx, cmd_name)
@@ -122,13 +123,13 @@ class Commands(TyperGroup):
 
     def make_context(self, *given: Any, **more: Any) -> Any:
         """The context of the words given; Typer's message on a wrong word is put on one line."""
-        with _plain_words():
+        with _reporting():
             return super().make_context(*given, **more)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; an error of the library becomes a message, in the command's options, and an exit code."""
         try:
-            with _plain_words():
+            with _reporting():
                 return super().invoke(ctx)
         except KeyboardInterrupt as error:
             # Typer makes an exit code of it, and drops what the library adds to it.
@@ -145,13 +146,33 @@ class Commands(TyperGroup):
 
 
 @contextmanager
-def _plain_words() -> Iterator[None]:
-    """Put the messages of Typer's errors on one line, with control characters escaped, and cut long ones."""
+def _reporting() -> Iterator[None]:
+    """Turn errors of files and memory into the library's, and any other fault into a message and exit code 3.
+
+    Messages of Typer's errors on words are put on one line, with control characters escaped, and long ones are cut.
+    """
     try:
         yield
     except _USAGE_ERROR as error:
         error.message = one_line(str(error.message))
         raise
+    except (typer.Exit, typer.Abort, PneutouchError):
+        raise
+    except OSError as error:
+        refuse_stopped()
+        # A name that no file can have, a folder that may not be read, a full disk: the system's own words.
+        raise InputError(error.strerror or str(error), file=error.filename) from None
+    except MemoryError:
+        raise ComputationError("not enough memory", remedy="ask for less at once, or close other programs") from None
+    except Exception as error:
+        refuse_stopped()
+        if os.environ.get("PNEUTOUCH_DEBUG"):
+            raise
+        notify(
+            f"error: internal fault ({type(error).__name__}: {error}); please report it with the design file. "
+            "PNEUTOUCH_DEBUG=1 shows where"
+        )
+        raise typer.Exit(3) from None
 
 
 def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:

@@ -5,26 +5,14 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import (
-    ClampOption,
-    ClosureOption,
-    JsonOption,
-    ModelOption,
-    OutOption,
-    SetOption,
-    ToleranceOption,
-    app,
-    changes,
-    print_written,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import bar, report_next, set_words, table_text
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ComparisonRecord, RowRecord
 
 
-@app.command()
+@cli.app.command()
 def compare(
     things: Annotated[
         list[str],
@@ -34,36 +22,35 @@ def compare(
             autocompletion=names("designs"),
         ),
     ],
-    set_: SetOption = None,
-    model: ModelOption = None,
-    tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational",
-    clamp: ClampOption = "base",
-    out: OutOption = Path("outputs"),
-    json: JsonOption = False,
+    set_: cli.SetOption = None,
+    model: cli.ModelOption = None,
+    tolerance: cli.ToleranceOption = None,
+    closure: cli.ClosureOption = "variational",
+    clamp: cli.ClampOption = "base",
+    out: cli.OutOption = Path("outputs"),
+    json: cli.JsonOption = False,
 ) -> None:
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
-    with reporting():
-        from pneutouch.mechanics.models.choice import model_options
-        from pneutouch.workflows.compare import compare as run
-        from pneutouch.workflows.compare import write
+    from pneutouch.mechanics.models.choice import model_options
+    from pneutouch.workflows.compare import compare as run
+    from pneutouch.workflows.compare import write
 
-        with bar("") as progress:
-            result = run(
-                things,
-                changes(set_),
-                closure=closure,
-                clamp=clamp,
-                progress=progress,
-                **model_options(model, tolerance),
-            )
-            progress(len(things), len(things), "drawing curves and sections")
-            folder = write(result, out)
-        print_written(result.record, folder, comparison_text, json=json)
-        if not json:
-            uncalibrated, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
-            if calibration and not Path(f"{uncalibrated}@{calibration}").exists():
-                report_next("export-reader", uncalibrated, *set_words(set_, calibration))
+    with bar("") as progress:
+        result = run(
+            things,
+            cli.changes(set_),
+            closure=closure,
+            clamp=clamp,
+            progress=progress,
+            **model_options(model, tolerance),
+        )
+        progress(len(things), len(things), "drawing curves and sections")
+        folder = write(result, out)
+    cli.print_answer(result.record, comparison_text, folder, json=json)
+    if not json:
+        uncalibrated, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
+        if calibration and not Path(f"{uncalibrated}@{calibration}").exists():
+            report_next("export-reader", uncalibrated, *set_words(set_, calibration))
 
 
 def comparison_text(comparison: ComparisonRecord) -> str:

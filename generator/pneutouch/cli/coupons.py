@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, app, print_answer, print_json
 from pneutouch.cli.complete import coupon_names, names
 from pneutouch.cli.declared import words
 from pneutouch.cli.terminal import bar, echo, report_next, table_text
@@ -62,22 +62,21 @@ def coupons(
 ) -> None:
     """Make test prints to measure a printer and its resins, or enter what was measured."""
     given = {key: value for key, value in locals().items() if key in _CHOSEN and value}
-    with reporting():
-        if results is not None:
-            _enter(results, out, given, json)
-            return
-        from pneutouch.workflows.coupons.make import RESULTS, SHEET, build_coupons
+    if results is not None:
+        _enter(results, out, given, json)
+        return
+    from pneutouch.workflows.coupons.make import RESULTS, SHEET, build_coupons
 
-        order = _options(given)
-        with bar("making coupons"):
-            made = build_coupons(order, out or Path("outputs"))
-        if json:
-            print_json(made)
-        else:
-            folder = Path(made.folder)
-            echo(made.folder)
-            by_hand = f"print and measure as {folder / SHEET} states, fill in {folder / RESULTS}"
-            report_next("coupons", "--results", folder / RESULTS, first=by_hand)
+    order = _options(given)
+    with bar("making coupons"):
+        made = build_coupons(order, out or Path("outputs"))
+    if json:
+        print_json(made)
+    else:
+        folder = Path(made.folder)
+        echo(made.folder)
+        by_hand = f"print and measure as {folder / SHEET} states, fill in {folder / RESULTS}"
+        report_next("coupons", "--results", folder / RESULTS, first=by_hand)
 
 
 def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> None:
@@ -90,10 +89,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
     from pneutouch.workflows.coupons.results import enter_results
 
     report = enter_results(path, out)
-    if json:
-        print_json(report)
-    else:
-        echo(results_text(report))
+    print_answer(report, results_text, json=json)
 
 
 def _options(given: dict[str, Any]) -> "CouponOptions":

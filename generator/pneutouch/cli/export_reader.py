@@ -7,19 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    AnswerModelOption,
-    CalibrationOption,
-    DesignArgument,
-    JsonOption,
-    OutOption,
-    SetOption,
-    ToleranceOption,
-    app,
-    changes,
-    print_json,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.complete import simulators, years_of
 from pneutouch.cli.terminal import bar, echo, notify, table_text
 from pneutouch.errors import InputError
@@ -27,13 +15,13 @@ from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.results.record import plain
 
 
-@app.command("export-reader")
+@cli.app.command("export-reader")
 def export_reader(
-    design: DesignArgument,
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
-    model: AnswerModelOption = None,
-    tolerance: ToleranceOption = None,
+    design: cli.DesignArgument,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
+    model: cli.AnswerModelOption = None,
+    tolerance: cli.ToleranceOption = None,
     simulator: Annotated[
         str | None,
         typer.Option(
@@ -48,38 +36,37 @@ def export_reader(
             "none since a calibration, else a year.",
         ),
     ] = None,
-    out: OutOption = Path("outputs"),
-    json: JsonOption = False,
+    out: cli.OutOption = Path("outputs"),
+    json: cli.JsonOption = False,
 ) -> None:
     """Write the sensor's pressure-to-force model: a table, a C header, a Python module, an Arduino sketch."""
-    with reporting():
-        from pneutouch.evaluation.evaluate import evaluate
-        from pneutouch.mechanics.models.choice import model_options
-        from pneutouch.workflows.export_reader import make_reader, write_reader
+    from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.mechanics.models.choice import model_options
+    from pneutouch.workflows.export_reader import make_reader, write_reader
 
-        options = model_options(model or (None if tolerance else "auto"), tolerance)
-        aged = None if age is None else years_of(age, "age")
-        if simulator is not None and age is not None:
-            raise InputError("a simulator's model states no uncertainty", key="age", value=age, remedy="leave it out")
-        if simulator is not None:
-            _export_simulator(design, changes(set_, calibration), simulator, out, options, json=json)
-            return
-        with bar("tabulating the sensor"):
-            result = make_reader(evaluate(design, changes(set_, calibration), **options), aged)
-            folder = write_reader(result, out)
-        if result.note is not None:
-            notify(result.note)
-        off_percent = result.record.difference.nominal_percent
-        if off_percent > 0.5:
-            less = f"--set indentation.depth_mm=VALUE below {result.record.box.indentation_mm[1]:.3g} lessens that"
-            notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, above 0.5 %; {less}")
-        if json:
-            print_json({**result.document, "folder": str(folder)})
-        else:
-            echo(reader_text(result.record))
-            echo(f"\n{folder}")
-            files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
-            notify(f"how to use it: the examples at the head of {files}")
+    options = model_options(model or (None if tolerance else "auto"), tolerance)
+    aged = None if age is None else years_of(age, "age")
+    if simulator is not None and age is not None:
+        raise InputError("a simulator's model states no uncertainty", key="age", value=age, remedy="leave it out")
+    if simulator is not None:
+        _export_simulator(design, cli.changes(set_, calibration), simulator, out, options, json=json)
+        return
+    with bar("tabulating the sensor"):
+        result = make_reader(evaluate(design, cli.changes(set_, calibration), **options), aged)
+        folder = write_reader(result, out)
+    if result.note is not None:
+        notify(result.note)
+    off_percent = result.record.difference.nominal_percent
+    if off_percent > 0.5:
+        less = f"--set indentation.depth_mm=VALUE below {result.record.box.indentation_mm[1]:.3g} lessens that"
+        notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, above 0.5 %; {less}")
+    if json:
+        cli.print_json({**result.document, "folder": str(folder)})
+    else:
+        echo(reader_text(result.record))
+        echo(f"\n{folder}")
+        files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
+        notify(f"how to use it: the examples at the head of {files}")
 
 
 def _export_simulator(
@@ -94,7 +81,7 @@ def _export_simulator(
         result = make_simulator(evaluate(design, changed, **options), simulator)
         folder = write_simulator(result, out)
     if json:
-        print_json({**plain(result.record), "folder": str(folder)})
+        cli.print_json({**plain(result.record), "folder": str(folder)})
     else:
         echo(simulator_text(result.record))
         echo(f"\n{folder}")

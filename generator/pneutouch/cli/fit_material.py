@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, app, print_json
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
@@ -27,24 +27,23 @@ def fit_material(
     **options: Any,
 ) -> None:
     """Fit a hyperelastic law to a tensile or puck test and write it as a material of your own."""
-    with reporting():
-        from pneutouch.workflows.fit_material import fit_material as fit
-        from pneutouch.workflows.fit_material import fit_report, write_material
+    from pneutouch.workflows.fit_material import fit_material as fit
+    from pneutouch.workflows.fit_material import fit_report, write_material
 
-        asked = given(FitOptions, options)
-        with bar("fitting laws"):
-            fitted = fit(data, asked)
-            report = fit_report(fitted)
-            folder = write_material(fitted, report, out)
-        for note in report.notes:
-            notify(f"note: {note}")
-        if json:
-            print_json(replace(report, folder=str(folder)))
-            return
+    asked = given(FitOptions, options)
+    with bar("fitting laws"):
+        fitted = fit(data, asked)
+        report = fit_report(fitted)
+        folder = write_material(fitted, report, out)
+    for note in report.notes:
+        notify(f"note: {note}")
+    if json:
+        print_json(replace(report, folder=str(folder)))
+        return
 
-        echo(fit_text(report))
-        echo(f"\nwritten: {report.file}\n{folder}")
-        _report_next(asked.name, report.profile)
+    echo(fit_text(report))
+    echo(f"\nwritten: {report.file}\n{folder}")
+    _report_next(asked.name, report.profile)
 
 
 def _report_next(name: str, profile: str | None) -> None:

@@ -7,7 +7,7 @@ import typer
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.printers import makers
-from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder, reporting
+from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder
 from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import echo, notify, report_next
 from pneutouch.errors import InputError
@@ -42,32 +42,31 @@ def new(
     out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file, or copy a shipped file."""
-    with reporting():
-        from pneutouch.output.new import NewFile, change_of_copy, new_design, new_from
+    from pneutouch.output.new import NewFile, change_of_copy, new_design, new_from
 
-        note, started = None, {"--process": process, "--material": material}
-        if from_ is not None:
-            given = " and ".join(flag for flag, value in started.items() if value is not None)
-            if given:
-                remedy = change_of_copy(from_)
-                raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
-            made = new_from(from_, name, out, changes(set_))
-        elif set_:
-            raise InputError("no design to change", key="set", remedy="give one with `from`")
-        elif name is not None:
-            path, note = new_design(name, design_folder(out), process, material)
-            made = NewFile(path, ("check", name if out is None else str(path)))
-        else:
-            raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
-        echo(str(made.path))
-        if note is not None:
-            notify(note)
-        if made.profile is None:
-            report_next(*made.command, first=made.first)
-            return
+    note, started = None, {"--process": process, "--material": material}
+    if from_ is not None:
+        given = " and ".join(flag for flag, value in started.items() if value is not None)
+        if given:
+            remedy = change_of_copy(from_)
+            raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
+        made = new_from(from_, name, out, changes(set_))
+    elif set_:
+        raise InputError("no design to change", key="set", remedy="give one with `from`")
+    elif name is not None:
+        path, note = new_design(name, design_folder(out), process, material)
+        made = NewFile(path, ("check", name if out is None else str(path)))
+    else:
+        raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
+    echo(str(made.path))
+    if note is not None:
+        notify(note)
+    if made.profile is None:
+        report_next(*made.command, first=made.first)
+        return
 
-        command, first = next_of_profile(made.profile, made.path)
-        report_next(*command, first=first)
+    command, first = next_of_profile(made.profile, made.path)
+    report_next(*command, first=first)
 
 
 def next_of_profile(kind: str, path: Path) -> tuple[tuple[str, ...], str]:

@@ -6,17 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    DesignArgument,
-    JsonOption,
-    OutOption,
-    SetOption,
-    app,
-    changes,
-    print_written,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.commands import option
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, notify, report_next, table_text
@@ -28,41 +18,40 @@ if TYPE_CHECKING:
     from pneutouch.results.plan import PlannedCampaign
 
 
-@app.command()
+@cli.app.command()
 @with_options(PlanOptions)
 def plan(
     context: typer.Context,
-    design: DesignArgument,
+    design: cli.DesignArgument,
     rig: Annotated[
         Path | None,
         typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
     ] = None,
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
-    out: OutOption = Path("outputs"),
-    json: JsonOption = False,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
+    out: cli.OutOption = Path("outputs"),
+    json: cli.JsonOption = False,
     **options: Any,
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
-    with reporting():
-        from pneutouch.workflows.plan import make_plan, rig_of, write_plan
+    from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
-        with bar("planning the runs"):
-            result = make_plan(
-                design,
-                changes(set_, calibration),
-                given(PlanOptions, options),
-                rig=rig_of(rig),
-                rig_name="" if rig is None else rig.name,
-                out=out,
-            )
-            folder = write_plan(result, out)
-        for warning in result.record.warnings:
-            words = PneutouchError(warning.message).message(partial(option, context.command))
-            notify(f"warning: {warning.rule}: {words}")
-        print_written(result.record, folder, plan_text, json=json)
-        if not json:
-            report_next("simulate", folder)
+    with bar("planning the runs"):
+        result = make_plan(
+            design,
+            cli.changes(set_, calibration),
+            given(PlanOptions, options),
+            rig=rig_of(rig),
+            rig_name="" if rig is None else rig.name,
+            out=out,
+        )
+        folder = write_plan(result, out)
+    for warning in result.record.warnings:
+        words = PneutouchError(warning.message).message(partial(option, context.command))
+        notify(f"warning: {warning.rule}: {words}")
+    cli.print_answer(result.record, plan_text, folder, json=json)
+    if not json:
+        report_next("simulate", folder)
 
 
 def plan_text(plan: "PlannedCampaign") -> str:

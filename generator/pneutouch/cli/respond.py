@@ -5,19 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    DesignArgument,
-    JsonOption,
-    ModelOption,
-    OutOption,
-    SetOption,
-    ToleranceOption,
-    app,
-    changes,
-    print_written,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.terminal import bar, notify, report_next, set_words, table_text
 from pneutouch.results.response import LoadResponse
 
@@ -25,9 +13,9 @@ if TYPE_CHECKING:
     from pneutouch.workflows.respond import Load
 
 
-@app.command()
+@cli.app.command()
 def respond(
-    design: DesignArgument,
+    design: cli.DesignArgument,
     step: Annotated[
         str | None,
         typer.Option(metavar="SIZE", help="Step to a force or a travel, such as 2N or 3mm; left out: half the range."),
@@ -43,31 +31,30 @@ def respond(
         float | None, typer.Option(metavar="S", help="Length of the record, s; left out: 1 s, or ten cycles.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the gauge's noise.")] = 0,
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
-    model: ModelOption = None,
-    tolerance: ToleranceOption = None,
-    out: OutOption = Path("outputs"),
-    json: JsonOption = False,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
+    model: cli.ModelOption = None,
+    tolerance: cli.ToleranceOption = None,
+    out: cli.OutOption = Path("outputs"),
+    json: cli.JsonOption = False,
 ) -> None:
     """Simulate the signal of a step or a sine of force: wall, gas, line and gauge; with the gain over frequency."""
-    with reporting():
-        load = _load(step, sine, peak, duration)
-        from pneutouch.evaluation.evaluate import evaluate
-        from pneutouch.mechanics.models.choice import model_options
-        from pneutouch.workflows.respond import run_respond
-        from pneutouch.workflows.responded import responded, write_respond
+    load = _load(step, sine, peak, duration)
+    from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.mechanics.models.choice import model_options
+    from pneutouch.workflows.respond import run_respond
+    from pneutouch.workflows.responded import responded, write_respond
 
-        with bar("simulating the signal"):
-            evaluation = evaluate(design, changes(set_, calibration), **model_options(model, tolerance))
-            run = run_respond(evaluation, load, seed)
-            record = responded(run)
-            folder = write_respond(run, record, out)
-        for note in record.notes:
-            notify(f"note: {note}")
-        print_written(record, folder, respond_text, json=json)
-        if not json:
-            report_next("build", design, *set_words(set_, calibration))
+    with bar("simulating the signal"):
+        evaluation = evaluate(design, cli.changes(set_, calibration), **model_options(model, tolerance))
+        run = run_respond(evaluation, load, seed)
+        record = responded(run)
+        folder = write_respond(run, record, out)
+    for note in record.notes:
+        notify(f"note: {note}")
+    cli.print_answer(record, respond_text, folder, json=json)
+    if not json:
+        report_next("build", design, *set_words(set_, calibration))
 
 
 def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> "Load":

@@ -5,21 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    JsonOption,
-    OutOption,
-    SetOption,
-    app,
-    changes,
-    print_json,
-    print_written,
-    refuse_flags,
-    reporting,
-)
+from pneutouch.cli import app as cli
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.terminal import bar, echo, table_text
+from pneutouch.cli.terminal import bar, table_text
 from pneutouch.results.scan import ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of
 
@@ -35,7 +24,7 @@ _NOT_SEPARATING = {
 }
 
 
-@app.command()
+@cli.app.command()
 @with_options(ScanOptions)
 def scan(
     context: typer.Context,
@@ -52,27 +41,26 @@ def scan(
             help="Instead: rank domes by how well they separate two patterns, mm.",
         ),
     ] = None,
-    set_: SetOption = None,
-    calibration: CalibrationOption = None,
-    out: OutOption = Path("outputs"),
-    json: JsonOption = False,
+    set_: cli.SetOption = None,
+    calibration: cli.CalibrationOption = None,
+    out: cli.OutOption = Path("outputs"),
+    json: cli.JsonOption = False,
     **options: Any,
 ) -> None:
     """Scan a specimen with a sensor: signals, scalograms and which pattern each state shows."""
-    with reporting():
-        asked = given(ScanOptions, options)
-        if separate is not None:
-            refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
-            _separate(specimen, design, separate, asked, changes(set_, calibration), json=json)
-            return
-        from pneutouch.workflows.scan import run_scan
-        from pneutouch.workflows.scanned import scanned, write_scan
+    asked = given(ScanOptions, options)
+    if separate is not None:
+        cli.refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
+        _separate(specimen, design, separate, asked, cli.changes(set_, calibration), json=json)
+        return
+    from pneutouch.workflows.scan import run_scan
+    from pneutouch.workflows.scanned import scanned, write_scan
 
-        with bar("scanning"):
-            run = run_scan(specimen, design, asked, changes(set_, calibration))
-            record = scanned(run)
-            folder = write_scan(run, record, out)
-        print_written(record, folder, scan_text, json=json)
+    with bar("scanning"):
+        run = run_scan(specimen, design, asked, cli.changes(set_, calibration))
+        record = scanned(run)
+        folder = write_scan(run, record, out)
+    cli.print_answer(record, scan_text, folder, json=json)
 
 
 def _separate(
@@ -82,10 +70,7 @@ def _separate(
 
     with bar("ranking domes"):
         separation = separating(specimen, design, text, options, changed)
-    if json:
-        print_json(separation)
-    else:
-        echo(separation_text(separation))
+    cli.print_answer(separation, separation_text, json=json)
     if not separation.domes:
         raise typer.Exit(1)
 

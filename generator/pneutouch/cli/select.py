@@ -9,16 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    DesignFolderOption,
-    ForceOption,
-    JsonOption,
-    SetOption,
-    app,
-    design_folder,
-    print_json,
-    reporting,
-)
+from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, SetOption, app, design_folder, print_json
 from pneutouch.cli.complete import percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
 from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
@@ -138,7 +129,7 @@ def select(
     where = str(target or _FLAGS_ALONE)
     stated = {name: SELECT_FIELDS[name] for name, value in fields.items() if value is not None}
     given = {f"{option.table}.{option.key}": name for name, option in stated.items()}
-    with reporting(), named_by_flag(given, where, alone=target is None):
+    with named_by_flag(given, where, alone=target is None):
         from pneutouch.output.files import check_writable
         from pneutouch.output.new import check_free
         from pneutouch.workflows.select.graded import GradedSelectionRun

@@ -1,14 +1,13 @@
 """``pneutouch show``: what a 3MF or a voxel stack holds."""
 
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporting
-from pneutouch.cli.terminal import echo, table_text
+from pneutouch.cli.app import JsonOption, app, print_answer, refuse_flags
+from pneutouch.cli.terminal import table_text
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
 
 
@@ -24,24 +23,17 @@ def show(
     json: JsonOption = False,
 ) -> None:
     """Show a 3MF: its bodies, its metadata and the recipe it was built from. Of a voxel stack: what lies in it."""
-    with reporting():
-        document: object
-        if file.is_dir() and file.suffix.lower() != ".3mf":
-            from pneutouch.workflows.show import show_stack
+    if file.is_dir() and file.suffix.lower() != ".3mf":
+        from pneutouch.workflows.show import show_stack
 
-            stack = show_stack(file, out)
-            held = {"stack": stack.stack, "resins": stack.resins, **stack.held}
-            document, text = held, partial(stack_text, stack)
-        else:
-            from pneutouch.workflows.show import show as run
+        stack = show_stack(file, out)
+        held = {"stack": stack.stack, "resins": stack.resins, **stack.held}
+        print_answer(held, lambda held: stack_text(stack), json=json)
+    else:
+        from pneutouch.workflows.show import show as run
 
-            refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
-            package = run(file)
-            document, text = package, partial(show_text, package)
-        if json:
-            print_json(document)
-        else:
-            echo(text())
+        refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
+        print_answer(run(file), show_text, json=json)
 
 
 NO_RECIPE = "no recipe: not built by pneutouch, so it can be shown but not rebuilt"

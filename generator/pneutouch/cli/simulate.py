@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next
@@ -31,13 +31,12 @@ def simulate(
     **options: Any,
 ) -> None:
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
-    with reporting():
-        from pneutouch.workflows.simulate import simulate
+    from pneutouch.workflows.simulate import simulate
 
-        asked = given(SimulationOptions, options)
-        with bar("simulating specimens") as progress:
-            folder = simulate(design, out, changes(set_, calibration), asked, progress=progress)
-        _report(folder, asked, json=json)
+    asked = given(SimulationOptions, options)
+    with bar("simulating specimens") as progress:
+        folder = simulate(design, out, changes(set_, calibration), asked, progress=progress)
+    _report(folder, asked, json=json)
 
 
 def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:

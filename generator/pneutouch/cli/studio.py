@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import app, reporting
+from pneutouch.cli.app import app
 from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
@@ -32,26 +32,25 @@ def studio(
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
 ) -> None:
     """Open a page in the browser: change a design and see its drawing, curves and limits. Ctrl-C ends it."""
-    with reporting():
-        try:
-            import starlette  # noqa: F401
-            import uvicorn  # noqa: F401
-        except ImportError:
-            remedy = "install them: pip install 'pneutouch[studio]'"
-            raise InputError("the studio needs the packages starlette and uvicorn", remedy=remedy) from None
-        from pneutouch.studio.server import serve
+    try:
+        import starlette  # noqa: F401
+        import uvicorn  # noqa: F401
+    except ImportError:
+        remedy = "install them: pip install 'pneutouch[studio]'"
+        raise InputError("the studio needs the packages starlette and uvicorn", remedy=remedy) from None
+    from pneutouch.studio.server import serve
 
-        with tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True) as folder:
+    with tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True) as folder:
 
-            def opened(address: str) -> None:
-                echo(address)
-                notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
-                if not no_browser:
-                    page = forwarding(address, Path(folder))
-                    # A browser in a terminal would return when it is left.
-                    threading.Thread(target=webbrowser.open, args=(page.as_uri(),), daemon=True).start()
+        def opened(address: str) -> None:
+            echo(address)
+            notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
+            if not no_browser:
+                page = forwarding(address, Path(folder))
+                # A browser in a terminal would return when it is left.
+                threading.Thread(target=webbrowser.open, args=(page.as_uri(),), daemon=True).start()
 
-            serve(design, port, opened)
+        serve(design, port, opened)
 
 
 def forwarding(address: str, folder: Path) -> Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.errors import InputError
@@ -62,26 +62,25 @@ def sweep(
     json: JsonOption = False,
 ) -> None:
     """Predict a grid or a list of designs into one dataset (netCDF)."""
-    with reporting():
-        from pneutouch.workflows.sweep import sweep as run
-        from pneutouch.workflows.sweep.dataset import stored_dataset, write_companions, write_maps
-        from pneutouch.workflows.sweep.execute import ComputeResources
-        from pneutouch.workflows.sweep.grid import is_dense
+    from pneutouch.workflows.sweep import sweep as run
+    from pneutouch.workflows.sweep.dataset import stored_dataset, write_companions, write_maps
+    from pneutouch.workflows.sweep.execute import ComputeResources
+    from pneutouch.workflows.sweep.grid import is_dense
 
-        plan = _plan(
-            file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
-        )
-        target = _free_place(plan, out, charts)
-        with bar("computing points") as progress:
-            machines = ComputeResources(workers, scheduler)
-            done = run(plan, target, machines, fresh=fresh, yes=yes, progress=progress)
-        with bar("drawing the sensitivity"):
-            rows, written = write_companions(done.path, _MOST)
-            maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
-        _report(done, rows, written, maps, json=json)
-        if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
-            words = [word for word in sys.argv[1:] if word != "--fresh"]
-            report_next(*words, "--charts", done.path.with_name(f"{done.path.stem}-maps"))
+    plan = _plan(
+        file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
+    )
+    target = _free_place(plan, out, charts)
+    with bar("computing points") as progress:
+        machines = ComputeResources(workers, scheduler)
+        done = run(plan, target, machines, fresh=fresh, yes=yes, progress=progress)
+    with bar("drawing the sensitivity"):
+        rows, written = write_companions(done.path, _MOST)
+        maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
+    _report(done, rows, written, maps, json=json)
+    if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
+        words = [word for word in sys.argv[1:] if word != "--fresh"]
+        report_next(*words, "--charts", done.path.with_name(f"{done.path.stem}-maps"))
 
 
 def _plan(

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
@@ -48,22 +48,21 @@ def tray(
     json: JsonOption = False,
 ) -> None:
     """Lay many sensors out on one tray: print files, part marks and a label list."""
-    with reporting():
-        from pneutouch.output.files import check_writable
-        from pneutouch.workflows.tray.lay import lay
-        from pneutouch.workflows.tray.write import write_tray
+    from pneutouch.output.files import check_writable
+    from pneutouch.workflows.tray.lay import lay
+    from pneutouch.workflows.tray.write import write_tray
 
-        order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
-        folder = out / order.name
-        check_writable(folder)
-        record = write_tray(lay(order, progress=_report), folder, _report)
-        for note in record.left_out:
-            notify(f"not on this tray: {note}")
-        if json:
-            print_json(record)
-        else:
-            echo(_text(record))
-            echo(record.folder)
+    order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
+    folder = out / order.name
+    check_writable(folder)
+    record = write_tray(lay(order, progress=_report), folder, _report)
+    for note in record.left_out:
+        notify(f"not on this tray: {note}")
+    if json:
+        print_json(record)
+    else:
+        echo(_text(record))
+        echo(record.folder)
 
 
 def _order(
