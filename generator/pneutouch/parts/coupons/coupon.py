@@ -1,8 +1,10 @@
 """The declaration of a coupon family: its subject, drawing, measurements and instruments."""
 
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import ResolvedDesign
@@ -82,6 +84,12 @@ class Coupon:
     each: str = ""
     kinds: tuple[MaterialKind, ...] = ("elastomer", "rigid")
     turned_over: bool = False
+
+
+def instructions(name: str) -> dict[str, Any]:
+    """``steps`` and ``formulas`` of a coupon, from the file ``NAME.toml`` beside this one."""
+    content = tomllib.loads(Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
+    return {key: tuple(lines) for key, lines in content.items()}
 
 
 CALIPER = "caliper, 0.01 mm, closed without pressing"

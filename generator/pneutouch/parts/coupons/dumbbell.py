@@ -9,7 +9,7 @@ table of D638).
 import math
 
 from pneutouch.body import Prism, Solid
-from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, CouponContext, Nominal, instructions
 from pneutouch.shape.meridian import Arc, Line, Segment
 
 OVERALL, END_WIDTH, NARROW_LENGTH, NARROW_WIDTH = 115.0, 25.0, 33.0, 6.0
@@ -66,22 +66,7 @@ DUMBBELL = Coupon(
     5,
     draw,
     nominals,
-    steps=(
-        "Print flat, all lengthwise along x, and one set more along y where the direction matters.",
-        "Mark two lines 25 mm apart in the middle. Measure width and thickness at three places between them.",
-        "Stretch in about ten steps to 20 % of the gauge length (5 mm), more if you like; at each wait 60 s and read "
-        "the force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far "
-        "stiffer.",
-        "Extension is that of the 25 mm between the marks, never of the grips.",
-    ),
-    formulas=(
-        "stretch L = 1 + extension / gauge length; stress s = force / (width x thickness), medians of three",
-        "shear modulus mu = sum(s g) / sum(g^2) with g = L - 1/L^2, over all points up to the largest strain "
-        "(neo-Hookean)",
-        "for comparison E / (2 (1 + nu)) with the secant E = s / (L - 1) at 10 % strain; 8 % lower in a neo-Hookean "
-        "resin",
-        "over the dumbbells: mean, standard deviation, least and greatest",
-    ),
+    **instructions("dumbbell"),
     each="specimen",
     kinds=("elastomer",),
 )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
 from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
-from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, CouponContext, Nominal, instructions
 from pneutouch.shape.meridian import Point, cylinder, lines_around
 
 WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
@@ -111,25 +111,4 @@ def _pin(x: float, diameter: float, middle: float) -> Feature:
     return Feature(rod, cylinder(radius, PLATE, PLATE + PIN_HEIGHT).volume())
 
 
-GAUGE = Coupon(
-    "gauge",
-    "wall and hole gauge with a step block",
-    "printer",
-    1,
-    draw,
-    nominals,
-    steps=(
-        "Print gauge and block as they lie in the file: x, y and z are the machine's.",
-        "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, "
-        "pins, holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out "
-        "= false.",
-        "Measure what came out, three times each. Soft walls and pins: microscope, or a caliper that just touches.",
-        "The block is a staircase. Lying as printed, x is the width over each step counted from the top (5, 10, 15, "
-        "20), z the height of each step over the base, y the length across. Three readings each.",
-    ),
-    formulas=(
-        "accuracy = greatest |mean reading - nominal| over the block's lengths",
-        "hole undersize = mean of (nominal - mean reading) over the holes that came out, with its standard deviation",
-        "least wall, pin, hole and gap = the smallest that came out together with all larger ones",
-    ),
-)
+GAUGE = Coupon("gauge", "wall and hole gauge with a step block", "printer", 1, draw, nominals, **instructions("gauge"))

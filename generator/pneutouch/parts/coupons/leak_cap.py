@@ -5,7 +5,7 @@ base plane. The remaining gas is only the dead volume, and a leak cannot be in t
 """
 
 from pneutouch.body import Solid
-from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, CouponContext, Nominal, instructions
 from pneutouch.parts.layout import Layout
 from pneutouch.shape.meridian import Meridian, TracedPath, trace
 from pneutouch.spec.part import ClampedFlange
@@ -63,21 +63,5 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 LEAK_CAP = Coupon(
-    "leak-cap",
-    "leak-test cap",
-    "design",
-    1,
-    draw,
-    nominals,
-    steps=(
-        "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, "
-        "or under the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its "
-        "connector: print the connector without the membrane and glue the cap into the seat.",
-        "Leak: pump to about 20 kPa, close the valve, wait 60 s, read the start; read the end after 600 s. Three runs. "
-        "Hold cap and tube under water where it falls by more than 1 kPa.",
-        "Push: vent, fill a syringe with the same volume of air each time, connect, push it home, wait 30 s, read. "
-        "Three times.",
-    ),
-    formulas=("leak rate = (start - end) / time, kPa/min", "the push is used with the dead-volume plug"),
-    turned_over=True,
+    "leak-cap", "leak-test cap", "design", 1, draw, nominals, **instructions("leak-cap"), turned_over=True
 )

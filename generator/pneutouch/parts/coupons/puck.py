@@ -5,7 +5,7 @@ require 6 mm under the durometer, for which two pucks are stacked; the paper doe
 """
 
 from pneutouch.body import Solid
-from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, CouponContext, Nominal, instructions
 from pneutouch.shape.meridian import cylinder
 from pneutouch.units import grams
 
@@ -34,23 +34,4 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     )
 
 
-PUCK = Coupon(
-    "puck",
-    "hardness puck",
-    "material",
-    4,
-    draw,
-    nominals,
-    steps=(
-        "Print flat, matte all over, so that both faces are alike. Clean, dry, and wait 24 h; note the age.",
-        "Weigh each puck; measure diameter and thickness once each, at the middle.",
-        "Five hardness readings a puck, 6 mm apart and 5 mm from the edge, each read after 1 s; 20 in all, as in the "
-        "paper.",
-        "ISO 868 and ASTM D2240 require 6 mm of material: under one puck of 3 mm the table shows through. Lay two on "
-        "one another, or read single ones as the paper seems to have done, and note which; compare like with like.",
-    ),
-    formulas=(
-        "hardness: mean and standard deviation of all readings",
-        "density = 4 m / (pi d^2 t) a puck, then mean and standard deviation",
-    ),
-)
+PUCK = Coupon("puck", "hardness puck", "material", 4, draw, nominals, **instructions("puck"))

@@ -8,7 +8,7 @@ import math
 
 from pneutouch.body import Solid
 from pneutouch.errors import InputError
-from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, CouponContext, Nominal, instructions
 from pneutouch.parts.coupons.leak_cap import cap, rim_radius
 from pneutouch.shape.dome import DomeShape
 from pneutouch.units import ML
@@ -62,25 +62,5 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 VOLUME_PLUG = Coupon(
-    "volume-plug",
-    "dead-volume plug",
-    "design",
-    1,
-    draw,
-    nominals,
-    steps=(
-        "Print as it lies in the file, the cavity up. Before it goes in, fill the cavity up to its ledge with water at "
-        "room temperature and weigh what it holds, three times; dry it. Left out, the drawn volume counts, with the "
-        "printer's accuracy.",
-        "Fix it as the leak-test cap. Push the same volume of air from the same syringe as over the cap, wait 30 s, "
-        "read. Three times. Pressures of 20 to 80 % of the gauge's range are best.",
-    ),
-    formulas=(
-        "cavity V_c = water mass / 0.9982 g/mL (20 °C)",
-        "dead volume V_d = V_c p_plug / (p_cap - p_plug) (Boyle: p_cap V_d = p_plug (V_d + V_c), the same air in both)",
-        "with a known syringe instead: V_d = V_i p_ambient / p_cap, V_i being the air that the full syringe held",
-        "u(V_d)^2 = (p_plug / D)^2 u(V_c)^2 + (V_c p_plug / D^2)^2 u(p_cap)^2 + (V_c p_cap / D^2)^2 u(p_plug)^2, D = "
-        "p_cap - p_plug; each u the standard error of the mean, the gauge's own added in squares",
-    ),
-    turned_over=True,
+    "volume-plug", "dead-volume plug", "design", 1, draw, nominals, **instructions("volume-plug"), turned_over=True
 )
