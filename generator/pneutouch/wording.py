@@ -1,16 +1,14 @@
-"""Numbers and words for documents and texts: rounding, counts, lists, templates; and the mark of simulated data.
+"""Numbers and words for documents and texts: rounding, counts, lists, Markdown; and the mark of simulated data.
 
 Numbers are rounded because their last bits differ between processors, and no figure needs these bits.
 """
 
 import math
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Sequence
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, cast
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from typing import Any, TypeVar, cast
 
 SIMULATED = "SIMULATED DATA"
 """Mark before every figure that comes from simulated runs, on screen and on sheets."""
@@ -18,6 +16,11 @@ SIMULATED = "SIMULATED DATA"
 _ROUNDING = 1e-9
 
 _Json = TypeVar("_Json")
+
+
+def data_of(module: str) -> Any:
+    """The data in the TOML file that lies beside a module and has its name; ``module`` is its ``__file__``."""
+    return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
@@ -64,20 +67,3 @@ def held_by(regulated: bool, sealed: bool) -> str:
 def counted(count: int, one: str, many: str = "") -> str:
     """A count with its noun: ``1 design``, ``2 designs``; ``many`` is the plural if it is not ``one`` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"
-
-
-def templates(folder: Path, *, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> "Environment":
-    """Jinja's environment of the templates in a folder: unknown names are errors, tags leave no lines of their own.
-
-    A text that is filled in ends without the last line break of its template.
-    """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    return Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=autoescape,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=finalize,
-    )

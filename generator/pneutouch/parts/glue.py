@@ -1,10 +1,12 @@
 """Glues by the pair of surfaces that they join; only silicone's own glue bonds to silicone."""
 
-from typing import Literal, NamedTuple
+from collections.abc import Iterator
+from typing import Any, Literal, NamedTuple
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.part import CastRing, GluedFlange
 from pneutouch.spec.printer import Printer
+from pneutouch.wording import data_of
 
 GlueSurface = Literal["silicone", "photopolymer", "thermoplastic"]
 """Kind of surface to be glued, by the process that made it."""
@@ -36,39 +38,12 @@ class Glue(NamedTuple):
         return next((bond for bond in self.bonds if bond.pair == {one, other}), None)
 
 
-def _pair(one: GlueSurface, other: GlueSurface) -> frozenset[GlueSurface]:
-    return frozenset((one, other))
+def _bonds(entry: dict[str, Any]) -> Iterator[GlueBond]:
+    for kind in ("lasting", "weak"):
+        yield from (GlueBond(frozenset(pair), kind == "weak") for pair in entry.get(kind, ()))
 
 
-_HARD = (
-    GlueBond(_pair("photopolymer", "photopolymer")),
-    GlueBond(_pair("photopolymer", "thermoplastic")),
-    GlueBond(_pair("thermoplastic", "thermoplastic")),
-)
-
-GLUES: dict[str, Glue] = {
-    "silicone-adhesive": Glue(
-        "silicone adhesive (such as Sil-Poxy)",
-        (
-            GlueBond(_pair("silicone", "silicone")),
-            GlueBond(_pair("silicone", "thermoplastic"), weak=True),
-            GlueBond(_pair("silicone", "photopolymer"), weak=True),
-        ),
-        "jehbco.com.au: only silicone sticks to silicone, and silicone adhesives to plastics; adhesives.org: bonds of "
-        "silicone carry relatively small loads; Sil-Poxy: vendor's bulletin, from memory, unverified",
-    ),
-    "cyanoacrylate": Glue(
-        "cyanoacrylate",
-        _HARD,
-        "Stratasys TAG 80-01: one of the methods compared for FDM parts; on photopolymer: usual practice, unverified; "
-        "samaro.fr: standard cyanoacrylates do not work on silicone",
-    ),
-    "epoxy": Glue(
-        "two-part epoxy",
-        _HARD,
-        "usual practice on plastics, unverified; jehbco.com.au: glues other than silicone fail on silicone",
-    ),
-}
+GLUES = {name: Glue(one["title"], tuple(_bonds(one)), one["source"]) for name, one in data_of(__file__).items()}
 """The glues that a design can name, by name."""
 
 

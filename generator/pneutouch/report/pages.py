@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.export.reader.render import templates
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder
-from pneutouch.wording import markdown_escaped, templates
+from pneutouch.wording import markdown_escaped
 
 TEMPLATES = Path(__file__).parent / "templates"
 

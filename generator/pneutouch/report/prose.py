@@ -1,15 +1,12 @@
 """The sentences of a datasheet: fixed ones, and those filled in from the design."""
 
-import tomllib
 from math import isfinite
-from pathlib import Path
-from typing import Any
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.contact import ContactTable
-from pneutouch.wording import SIMULATED, counted
+from pneutouch.wording import SIMULATED, counted, data_of
 
-WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))
+WORDS = data_of(__file__)
 """Fixed sentences, and heads of tables, by the part of a sheet in which they stand."""
 
 

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.fields import EntryError, declaration, entries_of, is_one_of_list, table_of
 from pneutouch.spec.values import Quantity
-from pneutouch.wording import counted
+from pneutouch.wording import counted, data_of
 
 _MOST_KEYS = 8
 """Greatest number of keys that a message shows as a table's form; a larger table is looked up."""
@@ -185,34 +185,6 @@ def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
     return declaration(owner, written[path[-1]]).right
 
 
-_PLAIN = {
-    "Invalid value": "this is no value; text stands in double quotes, and true and false are in small letters",
-    "Invalid statement": "this is neither a key nor a table; write key = value, or [table]",
-    "Expected '=' after a key in a key/value pair": "a key is followed by = and a value",
-    "Expected newline or end of document after a statement": "only one key = value stands on a line",
-    "Expected ']' at the end of a table declaration": "the name of a table ends with ]",
-    "Expected ']]' at the end of an array declaration": "the name of a list of tables ends with ]]",
-    "Invalid initial character for a key part": "a key has letters, digits, - and _, or stands in double quotes",
-    "Unclosed array": "a list ends with ], its values with commas between",
-    "Unclosed inline table": "a table on one line ends with }, its keys with commas between",
-    "Unterminated string": "text ends with the quote that it begins with, on the same line",
-    "Unescaped '\\' in a string": "a backslash in text is written twice",
-    "Invalid hex value": "a code after \\u has four hexadecimal digits, after \\U eight",
-    "Escaped character is not a Unicode scalar value": "this code is no character",
-    "Invalid date or datetime": "there is no such date",
-    "Cannot overwrite a value": "this key or table is there twice",
-}
-
-_BEGINNINGS = {
-    "Cannot declare": "this table is there twice",
-    "Cannot redefine namespace": "this table is there twice",
-    "Cannot mutate immutable namespace": "this key is there twice",
-    "Duplicate inline table key": "this key is there twice",
-    "Found invalid character": "this character cannot stand in a file of text",
-    "Illegal character": "text is on one line, without control characters",
-    "Expected": "a character is missing",
-}
-
 _PLACE = re.compile(
     r"^(?P<problem>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)$", re.DOTALL
 )
@@ -236,6 +208,6 @@ def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
 
 def _plain(problem: str) -> str:
     """The parser's message in words that a user of the file understands; unchanged if there are none."""
-    if problem in _PLAIN:
-        return _PLAIN[problem]
-    return next((plain for start, plain in _BEGINNINGS.items() if problem.startswith(start)), problem)
+    known = data_of(__file__)
+    beginnings = known["beginning"].items()
+    return known["whole"].get(problem) or next((plain for one, plain in beginnings if problem.startswith(one)), problem)

@@ -2,6 +2,8 @@
 
 import re
 
+from pneutouch.wording import data_of
+
 _GAUGES = {"kPa": 1e-3, "Pa": 1e-6, "MPa": 1.0, "hPa": 1e-4, "mbar": 1e-4, "bar": 0.1, "psi": 6.894757293168e-3}
 
 UNITS: dict[str, dict[str, float]] = {
@@ -16,58 +18,13 @@ UNITS: dict[str, dict[str, float]] = {
 ABSOLUTE = "_abs"
 """Ending of the units of absolute pressures, from which the ambient pressure is subtracted."""
 
-_WORDS: dict[str, dict[str, str]] = {
-    "time": {
-        "s": "sec secs second seconds sek sekunden",
-        "ms": "msec msecs millisecond milliseconds millis",
-        "us": "µs μs usec microsecond microseconds micros",
-        "min": "mins minute minutes minuten",
-    },
-    "position": {
-        "mm": "millimeter millimeters millimetre millimetres",
-        "um": "µm μm micron microns micrometer micrometers micrometre micrometres",
-        "cm": "centimeter centimeters centimetre centimetres",
-        "m": "meter meters metre metres",
-        "in": 'inch inches "',
-    },
-    "force": {
-        "N": "newton newtons",
-        "mN": "millinewton millinewtons",
-        "kN": "kilonewton kilonewtons",
-        "gf": "g gram grams grf",
-        "kgf": "kg kilogram kilograms kp",
-        "lbf": "lb lbs pound pounds",
-    },
-    "pressure": {
-        "kPa": "kpa KPa KPA kilopascal kPag kPa(g)",
-        "Pa": "pascal",
-        "MPa": "megapascal",
-        "hPa": "hpa",
-        "mbar": "millibar mbarg mbar(g)",
-        "bar": "barg bar(g)",
-        "psi": "psig psi(g) lbf/in2 lbf/in²",
-        "mmHg": "mmhg torr",
-        "kPa_abs": "kpaa kPaa kPa(a) kPa(abs)",
-        "hPa_abs": "hPa(a) hPaa",
-        "mbar_abs": "mbara mbar(a) mbar(abs)",
-        "bar_abs": "bara bar(a) bar(abs)",
-        "psi_abs": "psia psi(a)",
-    },
-    "volume": {
-        "mL": "ml cc ccm cm3 cm³ cm^3 milliliter milliliters",
-        "uL": "ul µL μL µl μl",
-        "mm3": "mm³ mm^3",
-        "L": "l",
-    },
-}
-"""Other spellings of the units. A unit of mass means the weight."""
-
 _SMALL = frozenset({"psi", "bar", "lbf", "sec", "mm"})
 
 
 def _table() -> dict[str, tuple[str, str]]:
     table = {unit: (key, unit) for key, units in UNITS.items() for unit in units}
-    for key, units in _WORDS.items():
+    # Other spellings.
+    for key, units in data_of(__file__).items():
         for unit, words in units.items():
             table |= dict.fromkeys(words.split(), (key, unit))
     return table

@@ -35,7 +35,7 @@ from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.read import Changes
 from pneutouch.units import ML
-from pneutouch.wording import enumerated
+from pneutouch.wording import data_of, enumerated
 
 StepReport = Callable[[str], None]
 
@@ -133,27 +133,7 @@ def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyM
 _NAME = "NAME"
 """Placeholder for the design's name in patterns."""
 
-CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
-    (
-        ("datasheet.html", "datasheet.pdf"),
-        "the datasheet; the page has a 3D view that can be rotated, and can be read on a phone and printed",
-    ),
-    (("NAME.3mf",), "both bodies as one assembly, with material names and colours"),
-    (("stl/*.stl",), "one file for each body, all in one frame, for tray software that reads STL"),
-    (("NAME.step", "NAME.glb"), "the exact solids for CAD; the meshes for viewers"),
-    (
-        ("NAME-pressed.png", "NAME-pressed.glb"),
-        "the pressed dome in three dimensions, with the contact pressure on it (models `solid` and `harmonic`)",
-    ),
-    (
-        ("mould/*",),
-        "of a cast design: its mould, each part as it is printed, all on build plates, the closed mould for "
-        "CAD, its parts apart for viewers, and a section",
-    ),
-    (("prediction.json",), "every figure and curve, with units in the names"),
-    (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),
-    (("manifest.json",), "inputs, versions, measured mesh deviation, SHA-256 of every file"),
-)
+CONTENTS = tuple((tuple(group["names"]), group["words"]) for group in data_of(__file__)["files"])
 """Files of a build's folder by patterns of names, with a description, as in docs/reference/files.md."""
 
 

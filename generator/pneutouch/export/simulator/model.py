@@ -13,12 +13,13 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.body.solid import mesh_of
+from pneutouch.export.reader.render import templates
 from pneutouch.export.scene import stl
 from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.meridian import Segment
-from pneutouch.wording import rounded, templates
+from pneutouch.wording import rounded
 
 TEXTS = Path(__file__).parent
 

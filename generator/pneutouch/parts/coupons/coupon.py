@@ -1,9 +1,7 @@
 """The declaration of a coupon family: its subject, drawing, measurements and instruments."""
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
 from pneutouch.body import Solid
@@ -11,6 +9,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.material import Material
+from pneutouch.wording import data_of
 
 ROLE = "coupon"
 """Role of every coupon's solids."""
@@ -86,10 +85,9 @@ class Coupon:
     turned_over: bool = False
 
 
-def instructions(name: str) -> dict[str, Any]:
-    """``steps`` and ``formulas`` of a coupon, from the file ``NAME.toml`` beside this one."""
-    content = tomllib.loads(Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
-    return {key: tuple(lines) for key, lines in content.items()}
+def instructions(module: str) -> Any:
+    """``steps`` and ``formulas`` of a coupon, from the file beside its module, whose ``__file__`` is given."""
+    return {key: tuple(lines) for key, lines in data_of(module).items()}
 
 
 CALIPER = "caliper, 0.01 mm, closed without pressing"

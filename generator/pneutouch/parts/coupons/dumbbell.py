@@ -66,7 +66,7 @@ DUMBBELL = Coupon(
     5,
     draw,
     nominals,
-    **instructions("dumbbell"),
+    **instructions(__file__),
     each="specimen",
     kinds=("elastomer",),
 )

@@ -111,4 +111,4 @@ def _pin(x: float, diameter: float, middle: float) -> Feature:
     return Feature(rod, cylinder(radius, PLATE, PLATE + PIN_HEIGHT).volume())
 
 
-GAUGE = Coupon("gauge", "wall and hole gauge with a step block", "printer", 1, draw, nominals, **instructions("gauge"))
+GAUGE = Coupon("gauge", "wall and hole gauge with a step block", "printer", 1, draw, nominals, **instructions(__file__))

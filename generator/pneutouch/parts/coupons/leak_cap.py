@@ -62,6 +62,4 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     )
 
 
-LEAK_CAP = Coupon(
-    "leak-cap", "leak-test cap", "design", 1, draw, nominals, **instructions("leak-cap"), turned_over=True
-)
+LEAK_CAP = Coupon("leak-cap", "leak-test cap", "design", 1, draw, nominals, **instructions(__file__), turned_over=True)

@@ -34,4 +34,4 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     )
 
 
-PUCK = Coupon("puck", "hardness puck", "material", 4, draw, nominals, **instructions("puck"))
+PUCK = Coupon("puck", "hardness puck", "material", 4, draw, nominals, **instructions(__file__))

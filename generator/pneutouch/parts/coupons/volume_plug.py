@@ -62,5 +62,5 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 VOLUME_PLUG = Coupon(
-    "volume-plug", "dead-volume plug", "design", 1, draw, nominals, **instructions("volume-plug"), turned_over=True
+    "volume-plug", "dead-volume plug", "design", 1, draw, nominals, **instructions(__file__), turned_over=True
 )
