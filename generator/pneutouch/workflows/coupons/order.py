@@ -14,6 +14,7 @@ from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, nearest
 from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
 from pneutouch.parts.mould.size import open_mould
+from pneutouch.report.pages import filled
 from pneutouch.spec.coupon import CouponResults
 from pneutouch.spec.design import Membrane, Mould, Print
 from pneutouch.spec.fields import table_of
@@ -299,85 +300,32 @@ def _check_any(options: CouponOptions, families: list[Coupon], items: list[Coupo
         raise InputError("nothing to print", remedy="give another `only`")
 
 
-_HEAD = """\
-# Results of coupons. Fill in what was measured, leave [] for what was not, then:
-#   pneutouch coupons --results FILE    (the path of this file)
-# Two readings at least in a list that is filled. Numbers have a point: [27.5, 28.0]
-"""
-
-
 def results_template(order: CouponOrder) -> str:
     """Results file to fill in: TOML that is valid as soon as lab and date are given."""
-    blocks = [_HEAD + '# lab = "who measured"\n# date = 2026-11-21']
+    tables: list[tuple[Any, ...]] = []
     filed: set[tuple[str, float]] = set()
     for item in order.items:
-        if item.blend is not None:
-            key = item.blend.pair, item.blend.fraction
-            blocks.append(_mixed(item, first=key not in filed))
-            filed.add(key)
-            continue
-        path = [item.coupon.name, item.about]
-        if item.coupon.belongs == "printer":
-            path.insert(1, item.printer_name)
-        blocks.append(_table(item, ".".join(key_text(step) for step in path)))
-    return "\n\n".join(blocks) + "\n"
+        name, blend, fraction = item.coupon.name, item.blend, None
+        if blend is None:
+            steps = [name, *([item.printer_name] if item.coupon.belongs == "printer" else []), item.about]
+            path = ".".join(map(key_text, steps))
+        else:
+            # Hardness stands in the fraction's table, which its first coupon begins; dumbbells in one below.
+            path = "" if name == MIXED[0] else f"mixing.{key_text(blend.pair)}.{name}"
+            fraction = None if (blend.pair, blend.fraction) in filed else blend.fraction
+            filed.add((blend.pair, blend.fraction))
+        model = _model(name)
+        tables.append((item, path, fraction, _settings(model), _settings(table_of(model, item.coupon.each))))
+    return filled("results.toml.j2", tables=tables, key=key_text, value=value_text, counted=counted)
 
 
-def _mixed(item: CouponItem, *, first: bool) -> str:
-    """Lines of a coupon of a mix: hardness in the fraction's table, begun if ``first``; dumbbells in one below."""
-    assert item.blend is not None
-    path = f"mixing.{key_text(item.blend.pair)}"
-    lines = [f"[[{path}]]", f"fraction = {value_text(item.blend.fraction)}"] if first else []
-    if item.coupon.name != "puck":
-        return "\n".join([*lines, *([""] if lines else []), _table(item, f"{path}.{item.coupon.name}")])
-    return "\n".join([*lines, _empty(item.nominals[0], item.copies)])
-
-
-def _table(item: CouponItem, path: str) -> str:
-    nominals = item.nominals
-    model = _model(item.coupon.name)
-    lines = [f"# {item.coupon.title}: {item.copies} printed", f"[{path}]", *_settings(model)]
-    features = list(dict.fromkeys(nominal.feature for nominal in nominals))
-    if len(features) < len(nominals):
-        lines.append("# came_out = false, in place of readings, where it is missing, broken, blocked or grown together")
-        for feature in features:
-            lines += _rows(feature, [nominal for nominal in nominals if nominal.feature == feature])
-        return "\n".join(lines)
-    if not item.coupon.each:
-        return "\n".join([*lines, *(_empty(nominal, item.copies) for nominal in nominals)])
-    each = table_of(model, item.coupon.each)
-    assert each is not None
-    for _ in range(item.copies):
-        lines += ["", f"[[{path}.{item.coupon.each}]]", *(_reading(each, nominal) for nominal in nominals)]
-    return "\n".join(lines)
-
-
-def _settings(model: type[BaseModel]) -> list[str]:
-    """Lines for the numbers that state how a coupon was measured: their help, and their defaults."""
-    lines = []
-    for key, info in model.model_fields.items():
-        if isinstance(info.default, float):
-            lines += [
-                *(f"# {line}" for line in textwrap.wrap(info.description or "", 96)),
-                f"{key} = {value_text(info.default)}",
-            ]
-    return lines
-
-
-def _reading(model: type[BaseModel], nominal: Nominal) -> str:
-    default: Any = model.model_fields[nominal.feature].default
-    return f"{nominal.feature} = {value_text(default)}" if isinstance(default, float) else _empty(nominal, 1)
-
-
-def _empty(nominal: Nominal, copies: int) -> str:
-    drawn = "" if nominal.value is None else f"nominal {nominal.value:.4g} {nominal.unit}; "
-    each = f" on each of {copies}" if copies > 1 else ""
-    return f"{nominal.feature} = []  # {drawn}{counted(nominal.readings, 'reading')}{each}"
-
-
-def _rows(feature: str, nominals: list[Nominal]) -> list[str]:
-    rows = [f"  {{ nominal_mm = {value_text(nominal.value)}, measured_mm = [] }}," for nominal in nominals]
-    return [f"{key_text(feature)} = [", *rows, "]"]
+def _settings(model: type[BaseModel] | None) -> dict[str, tuple[float, list[str]]]:
+    """The numbers that state how a coupon was measured: their defaults, and their help on lines."""
+    return {
+        key: (info.default, textwrap.wrap(info.description or "", 96))
+        for key, info in ({} if model is None else model.model_fields).items()
+        if isinstance(info.default, float)
+    }
 
 
 def _model(coupon: str) -> type[BaseModel]:
