@@ -17,8 +17,8 @@ from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
-from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
-from pneutouch.wording import rounded
+from pneutouch.results.record import SENSITIVITY_KEY
+from pneutouch.wording import data_of, rounded
 
 Interval = tuple[float, float] | None
 
@@ -35,125 +35,72 @@ class SweepVariable:
 
 
 def _at(*keys: str) -> Callable[[Any], Any]:
-    """Function that reads a nested attribute; it returns None if one on the way is None."""
+    """Function that reads a nested attribute, or the first of a list; it returns None if one on the way is missing."""
 
     def read(record: Any) -> Any:
         for key in keys:
-            record = None if record is None else getattr(record, key)
+            if key == "first":
+                record = record[0] if record else None
+            else:
+                record = None if record is None else getattr(record, key)
         return record
 
     return read
 
 
-def _number(name: str, units: str, long_name: str, *keys: str) -> SweepVariable:
-    return SweepVariable(name, units, long_name, _at(*(keys or (name,))))
+def _at_range_end(key: str) -> Callable[[StateRecord], float | None]:
+    """Function that reads an off-axis curve at the end of the range."""
+
+    def read(state: StateRecord) -> float | None:
+        values, travel = _at("off_axis", key)(state), state.curve.indentation_mm
+        return None if values is None else float(np.interp(state.range_end_mm, travel, values))
+
+    return read
 
 
 def _force(end: int) -> Callable[[StateRecord], Any]:
     return lambda state: None if state.force_range_N is None else state.force_range_N[end]
 
 
-def _off_axis(name: str, units: str, long_name: str) -> SweepVariable:
-    """Variable for the value of an off-axis curve at the end of the range."""
-
-    def read(state: StateRecord) -> Any:
-        values, travel = _at("off_axis", name)(state), state.curve.indentation_mm
-        return None if values is None else float(np.interp(state.range_end_mm, travel, values))
-
-    return SweepVariable(name, units, f"{long_name}, at the end of the range; central contact: NaN", read)
-
-
-def _shear(name: str, units: str, long_name: str) -> SweepVariable:
-    read = _at("off_axis", "shear", name)
-    return SweepVariable(f"shear_{name}", units, f"{long_name}, where the object moves sideways; else NaN", read)
-
-
 def _range_event(state: StateRecord) -> str:
     return next((event.kind for event in state.events if event.ends_range), "depth")
 
 
-def _unread(state: StateRecord) -> None:
-    """Return no value: an interval is not part of a state (see `state_values`)."""
-
-
 ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
-_END = "end of the interval of the sensitivity, k = 2; unknown: NaN"
 
-STATE: tuple[SweepVariable, ...] = (
-    SweepVariable(
-        "status", "", "ok, refused (not possible), failed (not computed); empty if not asked for", lambda _: "ok", True
-    ),
-    SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
-    _number(SENSITIVITY_KEY, "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
-    SweepVariable(ENDS[0], "kPa/N", f"lower {_END}", _unread),
-    SweepVariable(ENDS[1], "kPa/N", f"upper {_END}", _unread),
-    _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
-    _number("r_squared", "1", "coefficient of determination of the straight line"),
-    _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
-    _number(STIFFNESS_KEY, "N/mm", "mean slope of contact force over indentation, first contact to range end"),
-    _number("range_end_mm", "mm", "indentation up to which the figures hold"),
-    SweepVariable("range_end_event", "", "what ends the range: depth (nothing does), or the event", _range_event, True),
-    SweepVariable("force_range_low_N", "N", "least contact force of the range", _force(0)),
-    SweepVariable("force_range_high_N", "N", "greatest contact force of the range", _force(1)),
-    _number("saturation_force_N", "N", "force where the local slope falls below half the fitted one; none: NaN"),
-    _number("apex_height_inner_mm", "mm", "apex height of the inner surface, inflated, before contact"),
-    _number("apex_height_outer_mm", "mm", "apex height of the outer surface, inflated, before contact"),
-    _number("cavity_volume_mL", "mL", "gas under the inflated dome, before contact"),
-    _off_axis("sideways_force_N", "N", "force of the dome on the object towards the offset"),
-    _off_axis("moment_N_mm", "N mm", "moment of the dome on the object about the centre of the base plane"),
-    _shear("stiffness_N_per_mm", "N/mm", "initial slope of the sideways force against the travel"),
-    _shear("peak_sideways_force_N", "N", "sideways force where it is greatest against the travel"),
-    _shear("slips_throughout_mm", "mm", "first travel at which every point of the contact slides"),
-)
-"""Variables for every point and driving pressure."""
+_READ: dict[str, Callable[[Any], Any]] = {
+    "status": lambda _: "ok",
+    "message": lambda _: "",
+    # An interval is not part of a state: see `state_values`.
+    **dict.fromkeys(ENDS, lambda _: None),
+    "range_end_event": _range_event,
+    "force_range_low_N": _force(0),
+    "force_range_high_N": _force(1),
+    "sideways_force_N": _at_range_end("sideways_force_N"),
+    "moment_N_mm": _at_range_end("moment_N_mm"),
+}
+"""Functions for the variables of a state that have no place of their own in it."""
 
 
-def _apex_at_limit(side: str) -> SweepVariable:
-    key, meaning = f"apex_height_{side}_mm", f"apex height of the {side} surface at the limit point"
-    return _number(f"limit_point_{key}", "mm", meaning, "limit_point", key)
-
-
-def _filled(key: str, units: str, meaning: str, *within: str) -> SweepVariable:
-    """Variable of the state that a point has by its injected gas or apex height."""
-
-    def read(record: PredictionRecord) -> Any:
-        value = _at(*within, key)(record.filled[0]) if record.filled else None
-        return None if value is None else float(value)
-
-    return SweepVariable(f"filled_{key}", units, f"{meaning}, of the state by gas or height; none: NaN", read)
+def _declared(kind: str) -> tuple[SweepVariable, ...]:
+    return tuple(
+        SweepVariable(
+            name,
+            one.get("units", ""),
+            one["long_name"],
+            _READ.get(name) or _at(*one.get("read", name).split(".")),
+            one.get("text", False),
+        )
+        for name, one in data_of(__file__)[kind].items()
+    )
 
 
 FILLED_SENSITIVITY = f"filled_{SENSITIVITY_KEY}"
 
-_TEAR = "driving pressure at which the resin may tear; not before the limit point: NaN"
-_RATED = "greatest driving pressure to be used: 0.9 of the lower end (k = 2) of the least limit"
-_ERROR = "greatest known error of the sensitivity; unknown: NaN"
-_LIMIT_ERROR = "known error of the limit pressure; unknown: NaN"
-_BASIS = "basis of the error of the sensitivity"
+STATE = _declared("state")
+"""Variables for every point and driving pressure."""
 
-POINT: tuple[SweepVariable, ...] = (
-    SweepVariable("model", "", "model that answered; empty if no state is ok", _at("model"), True),
-    _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
-    _number("break_strain_kPa", "kPa", _TEAR, "limits", "break_strain_kPa"),
-    _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
-    SweepVariable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
-    _number("rated_pressure_kPa", "kPa", _RATED, "rating", "rated_pressure_kPa"),
-    SweepVariable("rated_by", "", "the limit that the rated pressure follows from", _at("rating", "limit"), True),
-    _apex_at_limit("inner"),
-    _apex_at_limit("outer"),
-    _number("dead_volume_mL", "mL", "gas behind the cavity"),
-    _number("error_sensitivity_relative", "1", _ERROR, "error_estimate", "sensitivity_relative"),
-    _number("error_limit_pressure_relative", "1", _LIMIT_ERROR, "error_estimate", "limit_pressure_relative"),
-    SweepVariable("error_sensitivity_basis", "", _BASIS, _at("error_estimate", "sensitivity_basis"), True),
-    _filled("injected_volume_mL", "mL", "gas injected into the vented sensor, at ambient pressure", "held"),
-    _filled("driving_pressure_kPa", "kPa", "pressure before contact"),
-    _filled("apex_height_outer_mm", "mm", "apex height of the outer surface before contact"),
-    _filled("stable_regulated", "1", "1: a regulator holds it", "held"),
-    _filled("stable_sealed", "1", "1: a syringe holds it", "held"),
-    _filled(SENSITIVITY_KEY, "kPa/N", "sensitivity"),
-    _filled(STIFFNESS_KEY, "N/mm", "stiffness"),
-    _filled("range_end_mm", "mm", "range end"),
-)
+POINT = _declared("point")
 """Variables for every point."""
 
 
