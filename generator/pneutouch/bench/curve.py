@@ -13,6 +13,7 @@ from pneutouch.bench.indents import RunIndentations, find_indents
 from pneutouch.bench.record import BLOCK_ARRAYS, Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
 from pneutouch.bench.run_warnings import (
     SURELY,
+    behind,
     cut_short,
     goes_on,
     listed,
@@ -23,9 +24,11 @@ from pneutouch.bench.run_warnings import (
 )
 from pneutouch.bench.source import otherwise
 from pneutouch.errors import InputError
+from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import CampaignRun, Rig, RunKind
 
-Loadings = Sequence[tuple[Array, Array, Array]]
+Points = tuple[Array, Array, Array]
+Loadings = Sequence[Points]
 Warnings = list[SuspectInterval]
 
 ALIKE_DEEP = 0.95
@@ -35,6 +38,10 @@ LOADING_POINTS = 25
 """Points of the curve of a loop or a relaxation run: our choice, about twice as many as steps have."""
 
 _BEYOND_TRAVEL = 1.05
+
+_LAG_COUNTS, _EARLY = 0.01, 0.2
+"""Change of a channel at its steepest over a lag, as a share of its span, or of a figure, from which on a lag is asked
+about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too: our choice."""
 
 
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
@@ -60,24 +67,11 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
     told = "kind" not in run.model_fields_set
     run = run.model_copy(update={"kind": shows} if told else {})
-    touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
-    if not touched:
-        raise InputError(_no_contact(blocks, indentations))
-    warnings: Warnings = [*listed(blocks.warnings), *travels, *run_warnings(run, blocks, indentations)]
-    kept, left_out = _kept(blocks, indentations, touched, steps=told and run.kind == "steps")
-    warnings += left_out
-    if not kept:
-        reasons = "; ".join(sorted({warning.why for warning in left_out}))
-        raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
-    turns = run.kind in ("loop", "hand")
-    if turns or run.kind == "relaxation":
-        loadings = [_loading(blocks, indentations, k) for k in kept]
-        deep, shallow = _deep(loadings, kept, indentations.indents)
-        points = _averaged([loading for k, loading in zip(kept, loadings, strict=True) if k in deep])
-        kept, warnings = deep, [*warnings, *shallow]
-    else:
-        points = _points(indentations, kept)
-    indents = indentations.indents
+    steps = told and run.kind == "steps"
+    points, kept, left_out = _read(run, blocks, indentations, steps=steps)
+    warnings: Warnings = [*listed(blocks.warnings), *travels, *run_warnings(run, blocks, indentations), *left_out]
+    warnings += _lagging(run, blocks, indentations, points, steps=steps)
+    turns, indents = run.kind in ("loop", "hand"), indentations.indents
     if run.kind == "hand":
         points = np.full(points[0].size, np.nan), *points[1:]
         indents = tuple(replace(one, onset=math.nan, indentation=math.nan) for one in indents)
@@ -98,6 +92,75 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
         told=told,
         warnings=tuple(sorted(warnings, key=lambda warning: (warning.start, warning.end, warning.why))),
     )
+
+
+def _read(
+    run: CampaignRun, blocks: Blocks, indentations: RunIndentations, *, steps: bool
+) -> tuple[Points, list[int], Warnings]:
+    """Depths, forces and rises of a curve, (n,) each, the indices of its indentations, and warnings on the others."""
+    touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
+    if not touched:
+        raise InputError(_no_contact(blocks, indentations))
+    kept, left_out = _kept(blocks, indentations, touched, steps=steps)
+    if not kept:
+        reasons = "; ".join(sorted({warning.why for warning in left_out}))
+        raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
+    if run.kind in ("steps", "saturation"):
+        return _points(indentations, kept), kept, left_out
+    loadings = [_loading(blocks, indentations, k) for k in kept]
+    deep, shallow = _deep(loadings, kept, indentations.indents)
+    points = _averaged([loading for k, loading in zip(kept, loadings, strict=True) if k in deep])
+    return points, deep, [*left_out, *shallow]
+
+
+def _lagging(
+    run: CampaignRun, blocks: Blocks, indentations: RunIndentations, points: Points, *, steps: bool
+) -> Warnings:
+    """Question on the time between force, pressure and travel: by the way that a channel makes in it where it alone is
+    late, else by the figures that it changes, as a leak, warmed gas or a wall that relaxes may be behind it."""
+    force, pressure = (behind(blocks, indentations, key) for key in ("force", "pressure"))
+    early = min(force, 0.0) - pressure
+    lag, key, first, alone, late = max(
+        (pressure - max(force, 0.0), "pressure", "force", True, (0, 1)),
+        (force - max(pressure, 0.0), "force", "travel", True, (1, 0)),
+        (min(force, pressure), "force and pressure", "travel", False, (1, 1)),
+        (-max(force, pressure), "travel", "force and pressure", False, (-1, -1)),
+        (early, "force", "pressure", early > _EARLY, (0, -1)),
+    )
+    step = float(np.median(np.diff(blocks.time)))
+    if lag < step:
+        return []
+    values, count = getattr(blocks, "pressure" if key == "pressure" else "force"), round(lag / step)
+    way = float(np.ptp([values[count:], values[:-count]], axis=0).max(initial=0.0)) / max(float(np.ptp(values)), 1e-300)
+    if not alone or run.kind == "hand" or count < 2 or way < _LAG_COUNTS:
+        in_time = {
+            of: np.interp(blocks.time + by * lag, blocks.time, getattr(blocks, of))
+            for of, by in zip(("force", "pressure"), late, strict=True)
+        }
+        changed = _changed(run, replace(blocks, **in_time), points, steps=steps)
+        if changed < _LAG_COUNTS:
+            return []
+        way = max(way, changed)
+    comes = "come" if key == "force and pressure" else "comes"
+    why = f"the {key} {comes} {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
+    # Between stays a plate may go far in so short a time; the readings at the stays are right then.
+    if way < 0.5:
+        why += f" Take that out, or press {math.ceil(1.5 * way / _LAG_COUNTS)} times slower"
+    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
+
+
+def _changed(run: CampaignRun, blocks: Blocks, points: Points, *, steps: bool) -> float:
+    """Greatest relative difference of sensitivity, stiffness and force between blocks and points; 0 if not known."""
+    try:
+        others = _read(run, blocks, find_indents(blocks, by_hand=run.kind == "hand"), steps=steps)[0]
+    except InputError:
+        return 0.0
+    was, would = figures(*points), figures(*others)
+    if was is None or would is None:
+        return 0.0
+    keys = ("sensitivity", "force_high") if run.kind == "hand" else ("sensitivity", "stiffness", "force_high")
+    pairs = [(float(getattr(was, key)), float(getattr(would, key))) for key in keys]
+    return max(abs(there - here) / max(abs(here), 1e-300) for here, there in pairs)
 
 
 def _without_spikes(blocks: Blocks) -> Blocks:
@@ -174,7 +237,7 @@ def _kept(
     return kept, warnings
 
 
-def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
+def _points(indentations: RunIndentations, kept: Sequence[int]) -> Points:
     points = np.array(
         [(0.0, 0.0, 0.0), *((one.indentation, one.force, one.rise) for one in (indentations.indents[k] for k in kept))]
     )
@@ -182,7 +245,7 @@ def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, 
     return depth, force, rise
 
 
-def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array]:
+def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> Points:
     """Indentation (mm), force (N) and rise (MPa) of loading k, from contact to the deepest point, (n,) each."""
     part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
     start = int(np.searchsorted(blocks.time, indent.contact))
@@ -211,7 +274,7 @@ def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndenta
     return deep, [SuspectInterval(*indents[k].read, f"indentation {k + 1} {why}", False) for k in shallow]
 
 
-def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
+def _averaged(loadings: Loadings) -> Points:
     """Mean loading: depths, forces and rises at even depths from the origin, (n,) each."""
     depth = np.linspace(0.0, min(float(loading[0].max()) for loading in loadings), LOADING_POINTS + 1)
     curves = np.zeros((2, len(loadings), depth.size))
@@ -232,7 +295,7 @@ def _cycle(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array
     return force, rise, blocks.force[out] - base.mean[0], blocks.pressure[out] - base.mean[1]
 
 
-def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array]:
+def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> Points:
     at, base = slice(*indentations.parts[k].hold), indentations.bases[k]
     time = blocks.time[at]
     return time - time[0], blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]

@@ -90,7 +90,6 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
     if (share := max(blocks.joined)) > _FAST and run.kind not in ("steps", "saturation"):
         why = f"between two readings of a slow gauge the press goes {share:.0%} of its way: press slower"
         warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked"))
-    warnings += _lagging(blocks, indentations, by_hand=run.kind == "hand")
     # By hand the stretch before contact is found by the force itself, and ends a little late for a slope.
     return warnings if run.kind == "hand" else warnings + _leak(blocks, indentations) + _place(blocks, indentations)
 
@@ -231,37 +230,13 @@ def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation)
     return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 
 
-_LAG_COUNTS, _BY_HAND, _EARLY = 0.01, 0.05, 0.2
-"""Change of a channel at its steepest over a lag, as a share of its span, above which the lag is asked about; least lag
-in s by hand, where a resin that relaxes looks like one, and of a pressure before force and travel, where a leak does:
-our choice."""
-
 _RETURNED, _LEAST, _SAME, _TRIES, _TRY = 0.1, 8, 1e-9, 8, 0.2
 """Share of its way in by which a plate may end a press short of its clear end, for its lag; blocks that are averaged at
 an end, and least number of refreshes; relative difference of the same reading; number of steps in which a lag is found,
 and the longest, s: our choice."""
 
 
-def _lagging(blocks: Blocks, indentations: RunIndentations, *, by_hand: bool) -> list[SuspectInterval]:
-    """Doubt about the time between force, pressure and travel, or none."""
-    force, pressure = (_behind(blocks, indentations, key) for key in ("force", "pressure"))
-    least, early = _BY_HAND if by_hand else 0.0, min(force, 0.0) - pressure
-    # A plate whose place is told late has both after it: that shifts first contact and depths alike.
-    lags = [(pressure - max(force, 0.0), "pressure", "force"), (force - max(pressure, 0.0), "force", "travel")]
-    lag, key, first = max([(early if early > _EARLY else 0.0, "force", "pressure"), *lags])
-    values, step = getattr(blocks, key), float(np.median(np.diff(blocks.time)))
-    late = min(round(lag / step), blocks.time.size - 1)
-    missed = float(np.abs(values[late:] - values[: values.size - late]).max()) / max(float(np.ptp(values)), 1e-300)
-    if late < 2 or lag < least or missed < _LAG_COUNTS:
-        return []
-    why = f"the {key} comes {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
-    # Between stays a plate may go far in so short a time; the readings at the stays are right then.
-    if missed < 0.5:
-        why += f" Take that out, or press {math.ceil(1.5 * missed / _LAG_COUNTS)} times slower"
-    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
-
-
-def _behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
+def behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
     """Time in s by which a channel follows the travel, by the area that it encloses over it, in and out.
 
     The area of y(t - lag) over x is -lag times the integral of y' x', for a short lag. A wall that relaxes, a leak and

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from tests.bench.recordings import CLEAR, DEEP, READ, Recording, depths, presses, true_figures
+from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, depths, presses, true_figures
 from tests.workflows.characterize.test_recordings import asked, figures, read
 
 
@@ -51,6 +51,53 @@ def test_a_channel_behind_a_slow_filter_is_asked_about_by_its_time(row, channel,
     slower = read(tmp_path, Recording(legs, spoil=filtered(row, seconds)))
     value = true_figures(depths(25))["sensitivity_kPa_per_N"]
     assert not slower.questions and figures(slower)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+
+
+def turned(seconds):
+    """Legs of three cycles of a sine."""
+    share = np.linspace(0.0, 3.0, 181)
+    travel = CLEAR + (DEEP - CLEAR) * (1 - np.cos(2 * np.pi * share)) / 2
+    return [(seconds / 60, float(place)) for place in travel[1:]]
+
+
+def late(row, seconds):
+    """A channel delayed."""
+    return lambda s: np.vstack([s[:row], np.interp(s[0] - seconds, s[0], s[row]), s[row + 1 :]])
+
+
+TIMED = {
+    "late travel": (presses(2), late(1, 0.1), "travel comes", {}),
+    "late travel in steps": (READ["steps"].legs, late(1, 0.1), "travel comes", {}),
+    "late travel of a sine": (turned(5.0), late(1, 0.05), "travel comes", {}),
+    "one filter of both": (presses(2), lambda s: filtered(3, 0.3)(filtered(2, 0.3)(s)), "force and pressure come", {}),
+    "early pressure of a sine": (turned(5.0), late(3, -0.1), "force comes", {}),
+    "late pressure by hand": (presses(2), late(3, 0.05), "pressure comes", {"write": by_hand}),
+}
+"""Legs and delays of records whose figures the delays make wrong by more than 2 %, and the question on them."""
+
+
+@pytest.mark.parametrize("name", TIMED)
+def test_a_delay_that_spoils_a_figure_is_asked_about_and_goes_in_a_press_as_slow_as_told(name, tmp_path):
+    legs, spoil, words, kept = TIMED[name]
+    (question,) = asked(read(tmp_path, Recording(legs, spoil=spoil, **kept)), words)
+    times = int(re.findall(r"press (\d+) times slower", question)[0])
+    slower = read(tmp_path, Recording([(times * seconds, leg) for seconds, leg in legs], spoil=spoil, **kept))
+    assert not slower.questions
+    found, value = figures(slower), true_figures(depths(25))
+    for key in value if not kept else ["sensitivity_kPa_per_N"]:
+        assert found[key].value == pytest.approx(value[key] if not kept else 2.338, rel=0.02), key
+
+
+def test_a_wall_that_relaxes_is_not_taken_for_a_delay(tmp_path):
+    """Its force is greater on the way in than on the way out, and its pressure is not."""
+
+    def relaxing(samples):
+        slow = filtered(2, 1.0)(samples.copy())[2]
+        samples[2] += 0.2 * (samples[2] - slow)
+        return samples
+
+    measured = read(tmp_path, replace(READ["triangular"], spoil=relaxing))
+    assert not asked(measured, "s after the")
 
 
 def refreshed(rows, seconds, apart=0.0):
