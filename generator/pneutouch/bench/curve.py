@@ -44,6 +44,10 @@ _LAG_COUNTS, _EARLY = 0.01, 0.2
 about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too: our choice."""
 
 
+_GOES_ON = 0.004
+"""Share of its span by which a force grows in a stay of the plate from which on the travel is coarse: our choice."""
+
+
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """Curve of a run with a plate; its first point is the origin.
 
@@ -256,13 +260,16 @@ def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> Points:
 
 def _deepest(blocks: Blocks, part: Excursion) -> int:
     """Index of the block at which a loading ends: the first at the depth of its stay, else the deepest, the middle one
-    where a coarse travel reads several alike."""
+    where a coarse travel reads several alike, also if the force shows that the plate goes on in such a stay."""
     begin, end = part.hold
     place = blocks.position[begin:end]
     # A quick turn has one deepest block; a slow one many, of which noise must not choose.
     place = smoothed(place) if place.size >= LOADING_POINTS else place
-    deepest = np.flatnonzero(place >= (np.median(place) if part.held else place.max()))
-    return begin + int(deepest[0 if part.held else deepest.size // 2])
+    deepest = begin + np.flatnonzero(place >= (np.median(place) if part.held else place.max()))
+    middle, sixth = deepest.size // 2, deepest.size // 6 + 1
+    first, later = blocks.force[deepest[:sixth]], blocks.force[deepest[middle - sixth : middle + sixth]]
+    goes_on = later.size and later.mean() - first.mean() > _GOES_ON * float(np.ptp(blocks.force))
+    return int(deepest[0 if part.held and not goes_on else middle])
 
 
 def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:
