@@ -44,8 +44,8 @@ _LAG_COUNTS, _EARLY = 0.01, 0.2
 about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too: our choice."""
 
 
-_GOES_ON = 0.004
-"""Share of its span by which a force grows in a stay of the plate from which on the travel is coarse: our choice."""
+_GOES_ON, _AT_END = 0.004, 0.1
+"""Shares of its span by which a force grows in a stay of a coarse travel, and of a stage at its end: our choice."""
 
 
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
@@ -110,7 +110,13 @@ def _read(
         reasons = "; ".join(sorted({warning.why for warning in left_out}))
         raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
     if run.kind in ("steps", "saturation"):
-        return _points(indentations, kept), kept, left_out
+        points = _points(indentations, kept)
+        beyond = [k for k in touched if k not in kept and indentations.indents[k].indentation > points[0][-1]]
+        if beyond and (clipped := [one for one in blocks.warnings if one.kind == "clipped"]):
+            why = f"{clipped[0].why}; {len(beyond)} indentations are left out, and the figures end before, at "
+            why += f"{points[0][-1]:.3g} mm: press less deep, or use an instrument of greater range"
+            left_out.append(SuspectInterval(clipped[0].start, clipped[-1].end, why, False, "asked"))
+        return points, kept, left_out
     loadings = [_loading(blocks, indentations, k) for k in kept]
     deep, shallow = _deep(loadings, kept, indentations.indents)
     points = _averaged([loading for k, loading in zip(kept, loadings, strict=True) if k in deep])
@@ -268,8 +274,8 @@ def _deepest(blocks: Blocks, part: Excursion) -> int:
     deepest = begin + np.flatnonzero(place >= (np.median(place) if part.held else place.max()))
     middle, sixth = deepest.size // 2, deepest.size // 6 + 1
     first, later = blocks.force[deepest[:sixth]], blocks.force[deepest[middle - sixth : middle + sixth]]
-    goes_on = later.size and later.mean() - first.mean() > _GOES_ON * float(np.ptp(blocks.force))
-    return int(deepest[0 if part.held and not goes_on else middle])
+    grows = (later.mean() - first.mean()) / float(np.ptp(blocks.force)) if later.size else 0.0
+    return int(deepest[middle if not part.held or _GOES_ON < grows < _AT_END else 0])
 
 
 def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:

@@ -33,6 +33,9 @@ membrane, which begin linearly, w = 1 for a dome whose stiffness grows from zero
 UNSURE = 4.0
 """Ratio of an onset's standard error to the run's median above which a contact is too light for a fit: our choice."""
 
+BIAS = 0.04
+"""Bias of an onset as a share of the fitted stretch, included as a standard error: half of that tested for a dome."""
+
 _LEAST_POINTS, _MOST_POINTS, _NO_LENGTH = 6, 200, 1e-8
 _BACK = 3
 """Length of the stretch without contact in the fit, as a multiple of that with contact."""
@@ -148,12 +151,14 @@ def onsets(
     real = [loading for loading in loadings if loading is not None and loading.length > _NO_LENGTH]
     if not real:
         return [None] * len(parts)
+    # A loading that ends before the fitted force gives its onset late; where all do, there is no better.
+    some = any(loading.reaches for loading in real)
+    # Nor does it tell the shape where its readings begin inside, as from one step of stairs to the next.
+    real = [one for one in real if one.reaches or not some or one.low > one.position.min()]
     length = float(np.median([loading.length for loading in real]))
     bends = np.array(BENDS)
     bend = bends[[int(np.argmin(np.sum([_search(loading, bends, length)[1] for loading in real], axis=0)))]]
     fits = [None if loading is None else float(_search(loading, bend, length)[0][0]) for loading in loadings]
-    # A loading that ends before the fitted force gives its onset late; where all do, there is no better.
-    some = any(loading.reaches for loading in real)
     errors = [
         np.inf
         if loading is None or loading.length <= _NO_LENGTH or fit is None or (some and not loading.reaches)
@@ -170,6 +175,7 @@ def onsets(
         place = fit if fit is not None and fitted else middle
         touches = fitted or _presses(blocks, one, base, least, sign, middle)
         free = np.inf if loading is None else _error(loading, place, float(bend[0]), length, bends=True)
+        free = float(np.hypot(BIAS * length, free))
         contacts.append(ContactOnset(_time_at(blocks, one, place), place, fitted, free) if touches else None)
     return contacts
 

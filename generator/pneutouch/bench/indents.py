@@ -133,10 +133,6 @@ dome as it was."""
 TREMBLES = 0.5
 """Share of the greatest force by which a hand must let go to begin another press: our choice."""
 
-BIAS = 0.02
-"""Bias of a first contact, mm, included in its interval as a standard error: half of the bias tested for a dome."""
-
-
 FREE = 0.02
 """Least travel before first contact, as a share of the deepest indentation: our choice. Where the plate begins to move
 and the force to rise at one place, the sensor may have been pressed before."""
@@ -186,7 +182,7 @@ class RunIndentations:
         if self.hidden:
             return math.inf
         errors = [one.error for one in self.contacts if one is not None and one.fitted][:EARLY]
-        return math.hypot(BIAS, float(np.median(errors))) if errors else math.inf
+        return float(np.median(errors)) if errors else math.inf
 
     def kind(self, blocks: Blocks) -> RunKind:
         """Kind of run, by the indentations with contact."""

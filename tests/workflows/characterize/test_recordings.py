@@ -210,8 +210,27 @@ def test_a_force_whose_fit_knows_no_first_contact_has_no_interval(tmp_path):
     assert figure.low is None or figure.high - figure.low < figure.value
 
 
-def test_a_great_leak_is_a_question(tmp_path):
-    assert asked(read(tmp_path, replace(READ["stairs without return"], drift=-5.0)), "without contact")
+@pytest.mark.parametrize("drift", [-5.0, 2.0])
+@pytest.mark.parametrize("name", ["stairs without return", "stairs with return"])
+def test_a_leak_that_spoils_the_sensitivity_is_a_question(name, drift, tmp_path):
+    assert asked(read(tmp_path, replace(READ[name], drift=drift)), "without contact")
+
+
+@pytest.mark.parametrize("seconds", [0.8, 1.5, 4.0])
+@pytest.mark.parametrize("hold", [1.0, 5.0, 20.0])
+def test_a_noise_in_which_first_contact_is_lost_is_in_the_interval_or_asked_about(seconds, hold, tmp_path):
+    """With 0.1 N of noise and few readings of the way in, the stiffness is off by up to 9 %."""
+    legs = [(3.0, CLEAR), (seconds, DEEP), (hold, DEEP), (seconds, CLEAR), (3.0, CLEAR)]
+    measured = read(tmp_path, Recording(legs, noise=0.1))
+    figure, value = figures(measured)["stiffness_N_per_mm"], true_figures(depths(25))["stiffness_N_per_mm"]
+    inside = figure.low is not None and figure.low <= value <= figure.high
+    assert inside or figure.value == pytest.approx(value, rel=0.02) or asked(measured, "first contact is lost")
+
+
+@pytest.mark.parametrize("name", ["steps", "stairs with return"])
+def test_steps_that_end_where_the_force_is_clipped_are_asked_about(name, tmp_path):
+    clipped = replace(READ[name], spoil=lambda s: np.vstack([s[:2], np.minimum(s[2:3], 15.0), s[3:]]))
+    assert asked(read(tmp_path, clipped), "clipped", "the figures end")
 
 
 @pytest.mark.parametrize("stamp", ["2026-13-05T10:00:00", "2026-02-30T10:00:00", "2026-02-20T25:00:00"])

@@ -141,10 +141,21 @@ def test_a_gauge_too_slow_for_a_press_is_asked_about(row, tmp_path):
     assert asked(read(tmp_path, replace(READ["hold"], spoil=refreshed((row,), 0.5))), "press slower")
 
 
-def test_a_travel_in_small_steps_gives_the_figures_of_the_truth(tmp_path):
-    found = figures(read(tmp_path, Recording(spoil=lambda s: np.vstack([s[:1], np.round(s[1:2], 1), s[2:]]))))
+@pytest.mark.parametrize("legs", [presses(3), turned(5.0), turned(10.0), turned(20.0)])
+@pytest.mark.parametrize(("step", "zero"), [(0.1, 0.0), (0.1, 0.013), (0.05, 0.05)])
+def test_a_travel_in_small_steps_gives_the_figures_of_the_truth(legs, step, zero, tmp_path):
+    """The last reading of a turn stays while the plate goes on: it is no hold."""
+    coarse = Recording(legs, spoil=lambda s: np.vstack([s[:1], np.round((s[1:2] + zero) / step) * step, s[2:]]))
+    found = figures(read(tmp_path, coarse))
     for key, value in true_figures(depths(25)).items():
         assert found[key].value == pytest.approx(value, rel=0.02), key
+
+
+def test_a_contact_between_two_steps_of_stairs_is_found_as_well_as_the_interval_says(tmp_path):
+    """Before the step on which the force shows, the readings begin inside the dome and tell no shape."""
+    seldom = replace(READ["stairs with return"], spoil=lambda s: refreshed((2,), 0.5)(s)[:, ::5])
+    figure, value = figures(read(tmp_path, seldom))["stiffness_N_per_mm"], true_figures(depths())["stiffness_N_per_mm"]
+    assert figure.low <= value <= figure.high or figure.value == pytest.approx(value, rel=0.02)
 
 
 @pytest.mark.parametrize("spoil", [refreshed((1,), 0.5), lambda s: np.vstack([s[:1], np.round(2 * s[1:2]) / 2, s[2:]])])
