@@ -12,10 +12,10 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval, stretches
 from pneutouch.bench.run_warnings import refreshed
-from pneutouch.bench.source import MeasuredFile, otherwise
+from pneutouch.bench.source import MeasuredFile, as_option, otherwise
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import ColumnMap, Rig
+from pneutouch.spec.campaign import Column, ColumnMap, Rig
 from pneutouch.tables.read import chunks, whole
 from pneutouch.tables.unit_words import ABSOLUTE, UNITS
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
@@ -32,6 +32,9 @@ SPIKE, FEW = 0.1, 3
 
 GREATEST = 1e100
 """Greatest reading in internal units: no instrument reads more, and squares of much larger ones would overflow."""
+
+_USED = 0.1
+"""Least share of its range that a press takes of an instrument whose unit is asked about: our choice."""
 
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of other blocks repeat the one before: a coarse or
@@ -85,7 +88,7 @@ def read_blocks(
         collector.take(chunk.rows, samples)
         cut = cut or chunk.last is not None
         progress(chunk.share)
-    blocks, warnings = refreshed(collector.blocks(), keys)
+    blocks, warnings = refreshed(replace(collector.blocks(), columns=columns), keys)
     end = float(blocks.time[-1])
     warnings += [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][
         :cut
@@ -100,7 +103,7 @@ def read_blocks(
         found = _clipped(blocks, key, getattr(blocks, key), getattr(blocks, f"{key}_extreme"), *tops[key])
         clipped = any(one.kind == "clipped" for one in found)
         warnings += found if clipped or not pressed else [*found, *_at_end(blocks, key)]
-    return replace(blocks, warnings=(*blocks.warnings, *warnings), columns=columns)
+    return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
 def scaled(
@@ -222,10 +225,9 @@ def _clipped(
     for start, end in short:
         spikes[start:end] = True
     if (beyond & ~spikes).any():
-        why = (
-            f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, "
-            "or the rig's range?"
-        )
+        why = f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, "
+        units = _within(getattr(blocks.columns, key), key, float(extreme.max()) / unit / top)
+        why += "; ".join(["or the rig's range?", *units])
         return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
     warnings = [
         SuspectInterval(
@@ -244,6 +246,14 @@ def _clipped(
         at = float(blocks.time[start]) - width, float(blocks.time[end - 1]) + width
         warnings.append(SuspectInterval(*at, why, False, "spike"))
     return warnings
+
+
+def _within(column: Column, key: str, times: float) -> list[str]:
+    """Questions on units of a channel that bring it, at so many times its instrument's range, well within it."""
+    scaled_by = {unit: factor / UNITS[key][column.unit] for unit, factor in UNITS[key].items() if ABSOLUTE not in unit}
+    found = {by: unit for unit, by in reversed(scaled_by.items()) if _USED < by * times <= BEYOND}
+    options = {unit: as_option(**{key: column.model_copy(update={"unit": unit})}) for unit in found.values()}
+    return [f"is it in {unit} ({option})?" for unit, option in reversed(options.items())]
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:

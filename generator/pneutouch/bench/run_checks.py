@@ -1,5 +1,6 @@
 """Plausibility of a run against its prediction: wrong units, signs and columns are reported, never corrected."""
 
+import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,8 +50,9 @@ _LOST = 10.0
 _HOLD_FAR = 50.0
 _SPEEDS = 0.01, 50.0
 """Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
-_WAYS = 3
-"""Greatest number of readings of a press by hand that are asked about: our choice."""
+_WAYS, _BENT = 3, 0.05
+"""Greatest number of readings of a press by hand that are asked about; distance from a multiple of its prediction above
+which a press is of another shape: our choice, four times that of a wall, radius or dead volume that is another."""
 _WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
 _WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
@@ -107,19 +109,23 @@ def check_plausible(
 
 def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> str | None:
     """Question about the rise of a press by hand at its greatest force (or the prediction's), or None, with the
-    readings that would explain it. Raises InputError if off by more than `BEYOND`."""
+    readings that would explain it. Near the prediction a unit of both may still be wrong, as in kgf and psi: then the
+    curve is of another shape. Raises InputError if off by more than `BEYOND`."""
     if expected.curve is None:
         return None
     predicted = expected.curve[1:]
     reach, measured, target = _risen(curve.force, curve.rise, predicted)
-    if 1 / FAR <= measured / target <= FAR:
+    shape, ways = _compared(curve.force, curve.rise, predicted)[0], _read_otherwise(curve, columns, predicted)
+    near, bent = 1 / FAR <= measured / target <= FAR, shape > _BENT and bool(ways) and 3 * min(ways)[0] < shape
+    if near and not bent:
         return None
     problem = (
         f"columns {columns.force.name} and {columns.pressure.name}: the pressure rises by {number(measured / KPA)} "
         f"kPa at {number(reach)} N where the prediction has {number(target / KPA)} kPa"
+        f"{', and along another curve' if near else ''}"
     )
-    ways = _read_otherwise(curve, columns, predicted)
-    why = "; ".join(ways) or "are they swapped, or is the unit of one of them another (`columns`)"
+    likely = [ways[at] for at in sorted(ways) if at[0] <= 3 * min(ways)[0] + _BENT / 3][:_WAYS]
+    why = "; ".join(likely) or "are they swapped, or is the unit of one of them another (`columns`)"
     if 1 / BEYOND <= measured / target <= BEYOND:
         return f"{problem}: {why}, or is it {_WHY}"
     raise InputError(f"{problem}; {why}?", file=file)
@@ -131,29 +137,45 @@ def _risen(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[f
     return reach, float(np.interp(reach, force, rise)), float(np.interp(reach, *predicted))
 
 
-def _read_otherwise(curve: MeasuredCurve, columns: ColumnMap, predicted: tuple[Array, Array]) -> list[str]:
-    """Questions on an exchange or a unit that brings a press by hand within `UNIT_NEAR` of its prediction, with the
-    option that says so, the nearest first, at most `_WAYS`."""
-    force, pressure, found = columns.force, columns.pressure, dict[float, str]()
+def _compared(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[float, float]:
+    """Greatest distance of a press from a multiple of its prediction, as a share of its rise, and that multiple."""
+    at = np.linspace(0.05, 1.0, 40) * _risen(force, rise, predicted)[0]
+    measured, target = np.interp(at, force, rise), np.interp(at, *predicted)
+    times = max(float(measured @ target), 0.0) / max(float(target @ target), 1e-300)
+    return float(np.abs(measured - times * target).max() / max(float(np.abs(measured).max()), 1e-300)), times
+
+
+def _read_otherwise(
+    curve: MeasuredCurve, columns: ColumnMap, predicted: tuple[Array, Array]
+) -> dict[tuple[float, float], str]:
+    """Questions on an exchange or units that bring a press by hand within `UNIT_NEAR` of its prediction, with the
+    option that says so, by the distance of the curve's shape, in hundredths, and by that of its magnitude."""
+    force, pressure, found = columns.force, columns.pressure, dict[tuple[float, float], str]()
     of_force, of_pressure = UNITS["force"][force.unit], UNITS["pressure"][pressure.unit]
 
     def consider(question: str, forces: Array, rises: Array, **read: Column) -> None:
-        _, measured, target = _risen(forces, rises, predicted)
-        off = abs(math.log(max(measured, 1e-300) / target)) if target > 0 else math.inf
+        shape, times = _compared(forces, rises, predicted)
+        off = abs(math.log(max(times, 1e-300)))
         if off < math.log(UNIT_NEAR):
-            found.setdefault(off, f"{question} ({as_option(**read)})")
+            found.setdefault((round(shape, 2), round(off, 9)), f"{question} ({as_option(**read)})")
 
     turned = force.model_copy(update={"name": pressure.name}), pressure.model_copy(update={"name": force.name})
     values = curve.rise * of_force / of_pressure, curve.force * of_pressure / of_force
     consider("are they exchanged", *values, force=turned[0], pressure=turned[1])
-    for unit, factor in UNITS["force"].items():
-        values = curve.force * factor / of_force, curve.rise
-        consider(f"is the force in {unit}", *values, force=force.model_copy(update={"unit": unit}))
-    for unit, factor in UNITS["pressure"].items():
-        if unit.endswith(ABSOLUTE_UNIT) == pressure.unit.endswith(ABSOLUTE_UNIT):
-            values = curve.force, curve.rise * factor / of_pressure
-            consider(f"is the pressure in {unit}", *values, pressure=pressure.model_copy(update={"unit": unit}))
-    return [found[off] for off in sorted(found)[:_WAYS]]
+    units = [
+        unit for unit in UNITS["pressure"] if unit.endswith(ABSOLUTE_UNIT) == pressure.unit.endswith(ABSOLUTE_UNIT)
+    ]
+    for units_read in itertools.product([force.unit, *UNITS["force"]], [pressure.unit, *units]):
+        other = {
+            key: column.model_copy(update={"unit": unit})
+            for key, column, unit in zip(("force", "pressure"), (force, pressure), units_read, strict=True)
+            if unit != column.unit
+        }
+        factors = UNITS["force"][units_read[0]] / of_force, UNITS["pressure"][units_read[1]] / of_pressure
+        named = " and ".join(f"the {key} in {column.unit}" for key, column in other.items())
+        if other and factors != (1.0, 1.0):
+            consider(f"is {named}", curve.force * factors[0], curve.rise * factors[1], **other)
+    return found
 
 
 def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:
@@ -326,7 +348,7 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     )
     # No state reads below 0: that is a zero, whatever its size.
     if abs(off_kPa) <= DRIVING_FAR * near_kPa or read_kPa < 0.0:
-        return f"{problem}; another run's file, or a gauge not zeroed?"
+        return f"{problem}; another run's file, or, with {off_kPa:.3g} kPa to subtract in the file, a gauge not zeroed?"
     if not looks_absolute(off_kPa):
         check_unpressed(curve, stated_kPa, file)
     set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"

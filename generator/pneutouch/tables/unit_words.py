@@ -5,12 +5,13 @@ import re
 from pneutouch.wording import data_of
 
 _GAUGES = {"kPa": 1e-3, "Pa": 1e-6, "MPa": 1.0, "hPa": 1e-4, "mbar": 1e-4, "bar": 0.1, "psi": 6.894757293168e-3}
+_COLUMNS = {"mmHg": 1.33322387415e-4, "inH2O": 2.4908891e-4}
 
 UNITS: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
     "position": {"mm": 1.0, "um": 1e-3, "cm": 10.0, "m": 1e3, "in": 25.4},
     "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
-    "pressure": _GAUGES | {"mmHg": 1.33322387415e-4} | {f"{u}_abs": _GAUGES[u] for u in _GAUGES},
+    "pressure": _GAUGES | _COLUMNS | {f"{u}_abs": _GAUGES[u] for u in _GAUGES},
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
 }
 """Units of columns by channel, with the factor to the internal unit: s, mm, N, MPa, mm3."""

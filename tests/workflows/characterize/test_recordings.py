@@ -168,16 +168,29 @@ def test_a_spike_in_a_press_by_hand_is_no_press(tmp_path):
         (lambda s: s / np.array([[1], [1], [1], [6.894757]]), "in psi"),
         (lambda s: s * np.array([[1], [1], [1], [10.0]]), "in hPa"),
         (lambda s: s[[0, 1, 3, 2]], "exchanged"),
+        (lambda s: s * np.array([[1], [1], [1], [1e3]]), "in Pa"),
+        (lambda s: s / np.array([[1], [1], [1], [0.24908891]]), "in inH2O"),
+        # Each alone is far from the prediction; together they are near, along another curve.
+        (lambda s: s / np.array([[1], [1], [9.80665], [6.894757]]), "in kgf and the pressure in psi"),
+        (lambda s: s / np.array([[1], [1], [9.80665], [100.0]]), "in kgf and the pressure in bar"),
     ],
 )
 def test_a_press_by_hand_in_another_unit_or_exchanged_is_told_with_the_option_that_is_right(turn, word, tmp_path):
     wrong = Recording(write=by_hand, spoil=turn)
     measured = read(tmp_path, wrong)
-    said = [entry.message for entry in measured.failures] or asked(measured, "where the prediction has")
+    said = [entry.message for entry in measured.failures] or asked(measured, f"{word} (give")
     (option,) = re.findall(rf"{word} \(give `columns` ([^)]*)\)", said[0])
     right = read(tmp_path, wrong, reading={"columns": parse_columns(shlex.split(option))})
     assert not right.questions and not right.failures
     assert figures(right)["sensitivity_kPa_per_N"].value == pytest.approx(2.34, rel=0.02)
+
+
+def test_a_gauge_that_reads_too_little_is_asked_about_once_with_what_then_is_right(tmp_path):
+    low = Recording(write=by_hand, ambient=-3.0)
+    (question,) = read(tmp_path, low).questions
+    (zero,) = map(float, re.findall(r"with (\S+) kPa to subtract", question.question))
+    right = replace(low, spoil=lambda s: s - np.array([[0.0], [0.0], [0.0], [zero]]))
+    assert not read(tmp_path, right).questions
 
 
 def test_a_press_by_hand_and_one_of_a_plate_are_not_averaged(tmp_path):

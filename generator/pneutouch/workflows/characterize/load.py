@@ -360,5 +360,6 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: Camp
             day_kPa = scene.design.pneumatics.ambient_pressure_kPa + read_kPa
             problem = f"an absolute pressure of {day_kPa:.4g} kPa before contact: was it the ambient one of the day?"
             stated = f"`pneumatics.ambient_pressure_kPa`={day_kPa:.4g}"
-        gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
+        if column.unit.endswith(ABSOLUTE) or read_kPa >= 0.0:
+            gathered.questions.append((curve.run.file, f"{problem} If so, state it by {stated}"))
     return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))
