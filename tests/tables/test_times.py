@@ -50,6 +50,20 @@ def test_dates_of_any_order_and_hours_of_half_a_day_are_seconds_from_the_first(
     np.testing.assert_allclose(force, passed)
 
 
+@pytest.mark.parametrize(
+    ("form", "step"),
+    [("%H:%M:%S:%f", 0.25), ("%m/%d/%Y %H:%M", 60.0), ("%d.%m.%Y %I:%M %p", 60.0), ("%Y-%m-%d %H:%M", 60.0)],
+)
+def test_parts_of_a_second_behind_a_colon_and_dates_without_seconds_are_read(form, step, tmp_path):
+    passed = step * np.arange(8.0)
+    begin = datetime.fromisoformat("2026-01-05T11:58:00")
+    times = [(begin + timedelta(seconds=second)).strftime(form) for second in passed]
+    path = tmp_path / "run.csv"
+    path.write_text("timestamp,force_N\n" + "".join(f"{time},{k}\n" for k, time in enumerate(times)))
+    _, (time, _) = whole(path, ["timestamp", "force_N"])
+    np.testing.assert_allclose(time, passed, atol=1e-9)
+
+
 def test_an_impossible_time_of_day_is_refused_with_its_row(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text("time,force_N\n10:00:00,1\n10:00:01,2\n10:61:02,3\n")

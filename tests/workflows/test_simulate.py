@@ -20,6 +20,7 @@ from pneutouch.spec.options import PlanOptions, SimulationOptions, options_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows import simulate as simulation
+from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.plan import make_plan, write_plan
 from pneutouch.workflows.simulate import simulate
 from pneutouch.workflows.simulate_inputs import KINDS
@@ -146,6 +147,23 @@ def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path)
 
 
 @pytest.mark.slow
+def test_a_press_ends_where_the_rig_stops_and_is_read_to_there(library, tmp_path):
+    """This resin takes twice the range of the rig's force sensor at the protocol's depth."""
+    asked = changed(
+        ASKED, kinds=["steps", "loop"], driving_pressures_kPa=[0.0], specimens=1, runs=1, resins=["FLX9970"]
+    )
+    folder = simulate("paper-dome", tmp_path, None, asked, library, truth=FEW)
+    truth = json.loads((folder / "truth.json").read_text())
+    (specimen,) = truth["specimens"].values()
+    (known,) = specimen["pressures"].values()
+    assert "rig" in known["range_ends_by"] and len(truth["notes"]) == 2
+    measured = characterize(folder, "paper-dome", model="atlas").figures
+    assert not measured.failures and not measured.questions
+    for key in ("sensitivity_kPa_per_N", "stiffness_N_per_mm", "force_range_N"):
+        assert measured.groups[0].figures[key].value == pytest.approx(known[key], rel=0.02), key
+    assert known["force_range_N"] < 36.0 < 40.0
+
+
 def test_what_stops_short_is_said(library, tmp_path):
     asked = changed(
         ASKED,

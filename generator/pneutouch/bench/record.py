@@ -260,7 +260,7 @@ class BlockCollector:
         raise InputError(
             f"row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after {before[at]:.9g} s",
             file=self.file,
-            remedy="must rise from row to row (enough decimals written? two recordings in one file?)",
+            remedy="must rise from row to row: write seconds with all decimals (or are two recordings in one file?)",
         )
 
     def _find_missed(self, time: Array) -> None:

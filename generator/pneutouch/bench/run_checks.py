@@ -319,7 +319,8 @@ def _speed(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
     speeds = [one.indentation / (one.hold[0] - one.contact) for one in curve.indents if one.hold[0] > one.contact]
     if not speeds or _SPEEDS[0] <= (speed := float(np.median(speeds))) <= _SPEEDS[1]:
         return None
-    unit = "ms" if speed < _SPEEDS[0] else "min"
+    of, units = UNITS["time"][columns.time.unit], UNITS["time"]
+    unit = min(units, key=lambda unit: abs(math.log(speed * of / units[unit])))
     goes = f"column {columns.time.name}: the plate goes in at {number(speed)} mm/s; are the times in {unit}?"
     return f"{goes} {otherwise(columns, 'time', unit)}"
 

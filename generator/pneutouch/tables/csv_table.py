@@ -74,9 +74,11 @@ class _Reader(NamedTuple):
             if not written.str.fullmatch(STAMP).all():
                 raise ValueError("no times of day")
             read = written.str.extract(STAMP).fillna("")
-            passed, half = pd.to_timedelta(read["clock"]).dt.total_seconds().to_numpy(), read["half"].str.upper()
+            clock = read["clock"].str.replace(r"(:\d+:\d+):", r"\1.", regex=True) + read["minutes"]
+            clock = clock.where(read["minutes"] == "", clock + ":00")
+            passed, half = pd.to_timedelta(clock).dt.total_seconds().to_numpy(), read["half"].str.upper()
             passed = np.where(half == "", passed, passed % (0.5 * _DAY) + 0.5 * _DAY * (half == "P"))
-            dates = read["date"]
+            dates = read["date"] + read["day"]
             last, date, days = self.latest.get(place, (float(passed[0]), dates.iloc[0], 0))
             other = dates.to_numpy() != dates.shift(fill_value=date).to_numpy()
             midnights = days + np.cumsum(other if date else np.diff(passed, prepend=last) < -0.5 * _DAY)

@@ -88,12 +88,14 @@ class TableLayout:
         return self.units if self.clock is None else ("s", *self.units)
 
 
+_DATE = r"\d\d?[./-]\d\d?[./-]\d{2,4}"
 STAMP = re.compile(
-    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?(?:Z|[+-]\d\d:?\d\d)?"
-    r"|(?:(?P<date>\d\d?[./-]\d\d?[./-]\d{2,4}) )?"
-    r"(?P<clock>\d\d?:[0-5]\d:[0-5]\d(?:[.,]\d+)?)(?: ?(?P<half>[APap])[Mm])?"
+    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?(?:Z|[+-]\d\d:?\d\d)?"
+    rf"|(?:(?:(?P<date>{_DATE}) )?(?P<clock>\d\d?:[0-5]\d:[0-5]\d(?:[.,]\d+|:\d{{3,6}})?)"
+    rf"|(?P<day>{_DATE}) (?P<minutes>\d\d?:[0-5]\d))(?: ?(?P<half>[APap])[Mm])?"
 )
-"""A date with a time of day in the form of ISO 8601, or a time of day, of twelve hours too, alone or behind a date."""
+"""A date with a time of day in the form of ISO 8601, or a time of day, of twelve hours too, alone or behind a date;
+behind a date the seconds may be missing. Parts of a second may stand behind a colon."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),

@@ -8,7 +8,7 @@ _GAUGES = {"kPa": 1e-3, "Pa": 1e-6, "MPa": 1.0, "hPa": 1e-4, "mbar": 1e-4, "bar"
 _COLUMNS = {"mmHg": 1.33322387415e-4, "inH2O": 2.4908891e-4}
 
 UNITS: dict[str, dict[str, float]] = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "d": 86400.0},
     "position": {"mm": 1.0, "um": 1e-3, "cm": 10.0, "m": 1e3, "in": 25.4},
     "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
     "pressure": _GAUGES | _COLUMNS | {f"{u}_abs": _GAUGES[u] for u in _GAUGES},

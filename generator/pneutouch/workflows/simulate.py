@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.simulate.curve import ModelDeviation, PressCurves, sensor_pressure
+from pneutouch.bench.simulate.curve import ModelDeviation, PressCurves, sensor_pressure, stopped
 from pneutouch.bench.simulate.rig import LEAK_SECONDS, MARK, SimulatedSpecimens, encoded, parameters
 from pneutouch.bench.simulate.runs import (
     RecordSamples,
@@ -210,7 +210,8 @@ def _depth(subject: SimulatedResin, options: RequestedRuns) -> float:
 
 def _pressed(subject: SimulatedResin, sensor: Sensor, options: RequestedRuns, who: str) -> PressCurves:
     driving = [p * KPA for p in driving_pressures_kPa(subject, options)]
-    return pressed(who, sensor, driving, _depth(subject, options), options.model)
+    curves, rig = pressed(who, sensor, driving, _depth(subject, options), options.model), subject.truth.rig
+    return stopped(curves, rig.force_range, rig.pressure_range)
 
 
 def _populations(subject: SimulatedResin, age: float, options: RequestedRuns) -> Iterator[SimulatedPopulation]:

@@ -69,6 +69,23 @@ def test_milliseconds_under_a_heading_of_seconds_are_asked_about_with_the_unit(n
     assert not asked(read(tmp_path, recording, reading={"columns": parse_columns([text])}), "goes in at")
 
 
+def serial_days(samples, header):
+    rows = (",".join([f"{46027.5 + row[0] / 86400:.9f}", *(f"{value:.5f}" for value in row[1:])]) for row in samples.T)
+    return header + "\n" + "\n".join(rows) + "\n"
+
+
+def test_serial_days_of_a_spreadsheet_are_read_in_the_unit_that_the_refusal_lists(tmp_path):
+    sheet = Recording(header="timestamp,position_mm,force_N,pressure_kPa", write=serial_days)
+    with pytest.raises(InputError, match=r"unit: .*\bd\b"):
+        read(tmp_path, sheet)
+    found = figures(read(tmp_path, sheet, reading={"columns": parse_columns(["time=timestamp:d"])}))
+    for key, value in true_figures(sheet.at()).items():
+        assert found[key].value == pytest.approx(value, rel=0.02), key
+    # In seconds the plate would be faster than any: the question names the unit.
+    (question,) = asked(read(tmp_path, sheet, reading={"columns": parse_columns(["time=timestamp:s"])}), "goes in at")
+    assert "time=timestamp:d" in question
+
+
 @pytest.mark.parametrize("ambient", [98.0, 101.3])
 def test_an_absolute_pressure_is_refused_with_the_unit_that_then_works(ambient, tmp_path):
     recording = Recording(ambient=ambient)

@@ -110,6 +110,29 @@ def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
     )
 
 
+STOPS = 0.9
+"""Share of the ranges of the rig's instruments at which its plate stops: our choice. The wall's memory, noise and zeros
+then stay below what counts as clipped (`bench.reading.CLIPPED`)."""
+
+
+def stopped(curves: PressCurves, force: float, pressure: float) -> PressCurves:
+    """The curves up to where the rig stops, for ranges of its force, N, and its pressure, MPa."""
+    return replace(curves, curves=tuple(_stopped(one, STOPS * force, STOPS * pressure) for one in curves.curves))
+
+
+def _stopped(curve: PressCurve, force: float, pressure: float) -> PressCurve:
+    travel = np.linspace(0.0, curve.reach, _GRID)
+    forces, rises = curve.at(travel)
+    over = np.flatnonzero((forces > force) | (curve.driving + rises > pressure))
+    if not over.size:
+        return curve
+    end = max(int(over[0]) - 1, 1)
+    keep, ends = curve.indentation < travel[end], ("the end of the rig's range", float(travel[end]))
+    points = ((curve.indentation, travel), (curve.force, forces), (curve.rise, rises))
+    depth, force_to, rise_to = (np.append(values[keep], fine[end]) for values, fine in points)
+    return PressCurve(curve.driving, depth, force_to, rise_to, ends)
+
+
 _WAVES = 3
 """Half waves along the travel that make up a smooth deviation, the k-th 1/k as large: our choice."""
 
