@@ -181,8 +181,8 @@ SLOW = 200.0
 MOST_BLOCKS = 400_000
 """Largest number of blocks, so that a slow file of any length stays small in memory."""
 
-LEAST_STEP = 1e-9
-"""Least time between two samples, s: our choice, far below that of any converter of force or pressure."""
+LEAST_STEP = 1e-6
+"""Least time between two samples, s: our choice, below that of any converter of force or pressure."""
 
 _MOST_LOST = 2.0**53
 
@@ -238,7 +238,7 @@ class BlockCollector:
             step = float(np.median(np.diff(time)))
             if step < LEAST_STEP:
                 problem = f"column {self.names['time']}: rises by {step:.3g} s from row to row"
-                remedy = "no instrument samples as often: is its unit right?"
+                remedy = "no instrument samples as often: is its unit right, or are they days (unit d)?"
                 raise InputError(problem, file=self.file, remedy=remedy)
             self.rate = 1 / step
         if self.size is None:
