@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -304,7 +303,7 @@ def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -
     ``ambient`` (MPa) is subtracted from absolute pressures.
 
     Raises InputError for what `tables.read.chunks` does, for fewer than three rows, a volume that does not vary, and a
-    pressure that does not rise with it.
+    pressure that does not rise with it, or begins near the ambient one.
     """
     path, columns = source.path, source.columns
     rows, values = whole(path, [getattr(columns, key).name for key in INJECTION], source.layout)
@@ -323,6 +322,9 @@ def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -
             file=path,
             remedy=f"are the columns swapped, or is a sign wrong: {otherwise(columns, 'volume')}",
         )
+    if _ABSOLUTE * ambient < float(pressure.min()) < 2 * ambient and volume.min() <= 0:
+        right = otherwise(columns, "pressure", f"{columns.pressure.unit}{ABSOLUTE}")
+        raise InputError(f"column {columns.pressure.name}: begins near the ambient pressure", file=path, remedy=right)
     return volume, pressure
 
 
@@ -330,40 +332,23 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
     """Volume behind a rigid cap, mm3, from injected volumes (mm3, at ambient pressure) and gauge pressures (MPa).
 
     Boyle: pressure = pressure_0 + ambient / V volume, by least squares with both free (a gauge's zero, or a first push
-    that was lost, does not matter). ``value`` is V, ``spread`` its standard error (count 1). Raises ValueError for
-    fewer than three points, a pressure that does not rise, or one that looks absolute."""
-    if volume.size < LEAST_POINTS:
-        raise ValueError(f"{volume.size} points of injected volume; at least {LEAST_POINTS}")
+    that was lost, does not matter), of at least `LEAST_POINTS` that rise. ``value`` is V, ``spread`` its standard error
+    (count 1)."""
     centred = volume - volume.mean()
     square = float(centred @ centred)
-    slope = float(centred @ pressure) / square if square > 0 else 0.0
-    if slope <= 0:
-        raise ValueError("the pressure must rise with the injected volume")
-    if float(pressure.min()) > _ABSOLUTE * ambient and float(pressure.min()) < 2 * ambient and volume.min() <= 0:
-        raise ValueError("the pressure begins near the ambient one; it must be gauge pressure")
+    slope = float(centred @ pressure) / square
     rest = pressure - pressure.mean() - slope * centred
     error = math.sqrt(float(rest @ rest) / (volume.size - 2) / square)
     dead = ambient / slope
     return Mean(dead, dead * error / slope, 1)
 
 
-class Leak(NamedTuple):
-    """Leak of a closed line: rate and its standard error (MPa/s, positive for a loss of pressure), its 95 % interval,
-    and the time constant in s of an exponential decay (infinite without a loss)."""
-
-    rate: float
-    error: float
-    interval: tuple[float, float]
-    time_constant: float
-
-
-def leak_of(time: Array, pressure: Array) -> Leak:
-    """Leak of a closed line from times (s) and gauge pressures (MPa), (n,) each.
+def leak_rate(time: Array, pressure: Array) -> tuple[float, float]:
+    """Leak rate of a closed line and its standard error (MPa/s, positive for a loss of pressure) from times (s) and
+    gauge pressures (MPa), (n,) each.
 
     The rate is the slope of the least-squares line, its error from the scatter of the means of ten equal parts about
-    that line (this takes correlated noise into account; eight degrees of freedom, Student's t in the interval). The
-    time constant T is that of p = p0 exp(-t/T), by the line through log p. Raises InputError for fewer than ten points.
-    """
+    that line (this takes correlated noise into account). Raises InputError for fewer than ten points."""
     if time.size < _LEAST_BLOCKS:
         raise InputError(f"a leak run of {time.size} points; at least {_LEAST_BLOCKS}")
     parts = np.array_split(np.arange(time.size), _BATCHES)
@@ -373,19 +358,4 @@ def leak_of(time: Array, pressure: Array) -> Leak:
     square = float(centred @ centred)
     slope = float(centred @ mean) / square
     rest = mean - mean.mean() - slope * centred
-    error = math.sqrt(float(rest @ rest) / (_BATCHES - 2) / square)
-    constant = math.inf
-    if slope < 0 and mean.min() > 0:
-        decay = float(centred @ np.log(mean)) / square
-        constant = -1 / decay if decay < 0 else math.inf
-    # Student's t at 97.5 % with 8 degrees of freedom (NIST/SEMATECH e-Handbook, 1.3.6.7.2).
-    half = 2.306 * error
-    return Leak(-slope, error, (-slope - half, -slope + half), constant)
-
-
-def leak_rate(blocks: Blocks) -> tuple[float, float]:
-    """Leak rate of a leak run and its standard error, MPa/s. Raises InputError for a run of fewer than ten blocks."""
-    try:
-        return leak_of(blocks.time, blocks.pressure)[:2]
-    except InputError as error:
-        raise InputError(f"{error}", file=blocks.file) from None
+    return -slope, math.sqrt(float(rest @ rest) / (_BATCHES - 2) / square)

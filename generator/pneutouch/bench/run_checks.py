@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.indents import HOLD, RELAXATION
 from pneutouch.bench.questions import (
     DRIVING_FAR,
     FAR,
@@ -47,7 +46,6 @@ compared; relative distances from the prediction below which it is met and above
 _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
-_HOLD_FAR = 50.0
 _SPEEDS = 0.01, 50.0
 """Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
 _WAYS, _BENT = 3, 0.05
@@ -55,31 +53,25 @@ _WAYS, _BENT = 3, 0.05
 which a press is of another shape: our choice, four times that of a wall, radius or dead volume that is another."""
 _WHY = "another resin (`membrane.material`, runs.resin) or design (`design`), a smaller plate, or a wrong calibration?"
 _WHY_LEAK = "a leak, a dead volume that is not given (`pneumatics.dead_volume_mL`), another resin or design?"
-_WHY_TIME = "holds of another protocol, another kind of run, or another column?"
-
-_SHAPE = 1.5
-"""Exponent of force and rise over depth that scales a prediction without a curve to a shallower depth (Hertz)."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedRun:
-    """The prediction of a run: force (N) and rise (MPa) at a depth (mm).
+    """The prediction of a run: indentations (ascending, mm), forces (N) and rises (MPa), (n,) each."""
 
-    ``curve`` is indentations (ascending, mm), forces and rises up to that depth, (n,) each; None if not available.
-    """
+    indentation: Array
+    force: Array
+    rise: Array
 
-    depth: float
-    force: float
-    rise: float
-    curve: tuple[Array, Array, Array] | None = None
+    @property
+    def depth(self) -> float:
+        """Greatest indentation, mm."""
+        return float(self.indentation[-1])
 
     def at(self, depth: float) -> tuple[float, float]:
         """Force (N) and rise (MPa) at a depth (mm) up to the prediction's."""
-        if self.curve is None:
-            share = (depth / self.depth) ** _SHAPE
-            return self.force * share, self.rise * share
-        travel, force, rise = self.curve
-        return float(np.interp(depth, travel, force)), float(np.interp(depth, travel, rise))
+        force, rise = (float(np.interp(depth, self.indentation, values)) for values in (self.force, self.rise))
+        return force, rise
 
 
 def check_plausible(
@@ -96,10 +88,7 @@ def check_plausible(
     if expected is not None and not by_hand:
         _check_start(curve, expected, file)
         _check_swap(curve, columns, expected, file)
-    # A kind that was told is not contradicted by the length of its holds.
-    time = None if by_hand or curve.told else _check_time(curve, columns, file)
-    if time is None and not by_hand:
-        time = _speed(curve, columns)
+    time = None if by_hand else _speed(curve, columns)
     magnitudes: list[str | None] = []
     if expected is not None:
         magnitudes = [_rise(curve, columns, expected, file)] if by_hand else _magnitudes(curve, columns, expected, file)
@@ -111,11 +100,10 @@ def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file:
     """Question about the rise of a press by hand at its greatest force (or the prediction's), or None, with the
     readings that would explain it. Near the prediction a unit of both may still be wrong, as in kgf and psi: then the
     curve is of another shape. Raises InputError if off by more than `BEYOND`."""
-    if expected.curve is None:
-        return None
-    predicted = expected.curve[1:]
-    reach, measured, target = _risen(curve.force, curve.rise, predicted)
-    shape, ways = _compared(curve.force, curve.rise, predicted)[0], _read_otherwise(curve, columns, predicted)
+    reach = min(float(curve.force[-1]), float(expected.force[-1]))
+    measured = float(np.interp(reach, curve.force, curve.rise))
+    target = float(np.interp(reach, expected.force, expected.rise))
+    shape, ways = _compared(curve.force, curve.rise, expected)[0], _read_otherwise(curve, columns, expected)
     near, bent = 1 / FAR <= measured / target <= FAR, shape > _BENT and bool(ways) and 3 * min(ways)[0] < shape
     if near and not bent:
         return None
@@ -131,30 +119,22 @@ def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file:
     raise InputError(f"{problem}; {why}?", file=file)
 
 
-def _risen(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[float, float, float]:
-    """Greatest force that a press and its prediction share, N, and the rise of each there, MPa."""
-    reach = min(float(force[-1]), float(predicted[0][-1]))
-    return reach, float(np.interp(reach, force, rise)), float(np.interp(reach, *predicted))
-
-
-def _compared(force: Array, rise: Array, predicted: tuple[Array, Array]) -> tuple[float, float]:
+def _compared(force: Array, rise: Array, expected: ExpectedRun) -> tuple[float, float]:
     """Greatest distance of a press from a multiple of its prediction, as a share of its rise, and that multiple."""
-    at = np.linspace(0.05, 1.0, 40) * _risen(force, rise, predicted)[0]
-    measured, target = np.interp(at, force, rise), np.interp(at, *predicted)
+    at = np.linspace(0.05, 1.0, 40) * min(float(force[-1]), float(expected.force[-1]))
+    measured, target = np.interp(at, force, rise), np.interp(at, expected.force, expected.rise)
     times = max(float(measured @ target), 0.0) / max(float(target @ target), 1e-300)
     return float(np.abs(measured - times * target).max() / max(float(np.abs(measured).max()), 1e-300)), times
 
 
-def _read_otherwise(
-    curve: MeasuredCurve, columns: ColumnMap, predicted: tuple[Array, Array]
-) -> dict[tuple[float, float], str]:
+def _read_otherwise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun) -> dict[tuple[float, float], str]:
     """Questions on an exchange or units that bring a press by hand within `UNIT_NEAR` of its prediction, with the
     option that says so, by the distance of the curve's shape, in hundredths, and by that of its magnitude."""
     force, pressure, found = columns.force, columns.pressure, dict[tuple[float, float], str]()
     of_force, of_pressure = UNITS["force"][force.unit], UNITS["pressure"][pressure.unit]
 
     def consider(question: str, forces: Array, rises: Array, **read: Column) -> None:
-        shape, times = _compared(forces, rises, predicted)
+        shape, times = _compared(forces, rises, expected)
         off = abs(math.log(max(times, 1e-300)))
         if off < math.log(UNIT_NEAR):
             found.setdefault((round(shape, 2), round(off, 9)), f"{question} ({as_option(**read)})")
@@ -185,7 +165,7 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     questions = [_magnitude(file, columns, "position", ratio, goes, predicted)]
     # Where the travel itself is suspect, the ends are compared.
     reach = min(depth, expected.depth) if questions[0] is None else depth
-    force, rise = expected.at(reach) if questions[0] is None else (expected.force, expected.rise)
+    force, rise = expected.at(reach if questions[0] is None else expected.depth)
     for key, values, target, unit, name in (
         ("force", curve.force, force, 1.0, "N"),
         ("pressure", curve.rise, rise, KPA, "kPa"),
@@ -217,7 +197,7 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
         then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
         right = otherwise(columns, key, nearest)
         raise InputError(f"{problem}; its unit looks like {same}{then}", file=file, remedy=right)
-    why = _WHY_LEAK if key == "pressure" and ratio < 1.0 else _WHY_TIME if key == "time" else _WHY
+    why = _WHY_LEAK if key == "pressure" and ratio < 1.0 else _WHY
     return f"{problem}; no unit explains that: {why}"
 
 
@@ -242,9 +222,9 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
 def _check_start(curve: MeasuredCurve, expected: ExpectedRun, file: Path) -> None:
     """Raise InputError if the record begins inside the dome, or first contact is found late: force and rise are the
     prediction's from some depth on, and no multiple of the prediction from first contact."""
-    if expected.curve is None or curve.indentation.size < _STARTED:
+    if curve.indentation.size < _STARTED:
         return
-    (travel, *predictions), depths = expected.curve, curve.indentation
+    travel, predictions, depths = expected.indentation, (expected.force, expected.rise), curve.indentation
 
     def off(start: float, *, scaled: bool = False) -> float:
         """Greatest distance of force and rise from the prediction's beyond ``start``, as a share of their greatest."""
@@ -323,19 +303,6 @@ def _speed(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
     unit = min(units, key=lambda unit: abs(math.log(speed * of / units[unit])))
     goes = f"column {columns.time.name}: the plate goes in at {number(speed)} mm/s; are the times in {unit}?"
     return f"{goes} {otherwise(columns, 'time', unit)}"
-
-
-def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """Question about holds whose length is off by more than `_HOLD_FAR` times, as in a wrong unit of time; else
-    None."""
-    if curve.run.kind == "loop" or not curve.indents:
-        return None
-    length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))
-    usual = RELAXATION if curve.run.kind == "relaxation" else HOLD
-    if 1 / _HOLD_FAR <= length / usual <= _HOLD_FAR:
-        return None
-    reads = f"holds last {number(length)} s"
-    return _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
 
 
 def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:

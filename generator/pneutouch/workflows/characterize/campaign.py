@@ -92,29 +92,20 @@ def _of(curve: MeasuredCurve) -> list[Any]:
     return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
 
 
-def injections(
-    loaded: CampaignData, scene: ResolvedDesign
-) -> tuple[tuple[InjectionFigure, ...], list[tuple[str, str]]]:
-    """Leak rates, and the gas volume of each injection as if the line were rigid; and files that give neither, with the
-    reason.
+def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[InjectionFigure, ...]:
+    """Leak rates, and the gas volume of each injection as if the line were rigid.
 
     An injection into a sensor swells the dome, so that this volume is too large; a calibration takes the dome into
     account."""
-    failures = []
     rows = [
         InjectionFigure(run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
     ambient_kPa = scene.design.pneumatics.ambient_pressure_kPa
     for run, volume, pressure in loaded.injections:
-        try:
-            total = dead_volume_of_cap(volume, pressure, ambient_kPa * KPA)
-        except ValueError as error:
-            failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
-            continue
-        name = f"gas volume as if rigid, {_when(run)}"
+        total, name = dead_volume_of_cap(volume, pressure, ambient_kPa * KPA), f"gas volume as if rigid, {_when(run)}"
         rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL"))
-    return tuple(rows), failures
+    return tuple(rows)
 
 
 def _when(run: CampaignRun) -> str:
@@ -199,7 +190,6 @@ def characterize(
     answer_of = answers(name, given, pairs, model, library)
     curves, failures, questions = sound(loaded, answer_of)
     groups = summarize(curves)
-    pushed, unread = injections(loaded, scene)
     comparisons = tuple(
         compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups
     )
@@ -209,10 +199,10 @@ def characterize(
         folder=loaded.folder,
         comparisons=comparisons,
         curves=tuple(curves),
-        failures=(*loaded.failures, *failures, *unread),
+        failures=(*loaded.failures, *failures),
         questions=(*questions, *unexpected(comparisons)),
         verdicts=() if request is None else verdicts(request, groups),
-        injections=pushed,
+        injections=injections(loaded, scene),
         ageing=ageing(groups, library),
         model=model,
         input_hash=_hash(loaded, scene.design.model_dump(mode="json")),

@@ -277,7 +277,7 @@ def _read(run: CampaignRun, gathered: CampaignData, progress: Callable[[float], 
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
         gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]
-        gathered.leaks.append((run, *leak_rate(blocks)))
+        gathered.leaks.append((run, *leak_rate(blocks.time, blocks.pressure)))
     else:
         gathered.curves.append(curve_of(run, blocks, campaign.rig))
 

@@ -66,13 +66,8 @@ class StatePrediction:
         state = self.state
         if state is None or state.figures is None:
             return None
-        state_figures, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
-        return ExpectedRun(
-            depth=float(state.indentation[kept][-1]),
-            force=state_figures.force_range[1],
-            rise=float(state.pressure_rise[kept][-1]),
-            curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
-        )
+        kept = state.indentation <= state.range_end * (1 + 1e-12)
+        return ExpectedRun(state.indentation[kept], state.force[kept], state.pressure_rise[kept])
 
 
 def answers(
