@@ -109,7 +109,7 @@ def _rating(rating: RatingRecord) -> list[str]:
 def _state_table(states: Sequence[StateRecord]) -> str:
     sampled = ["sampled"] if any(_sampled(state) is not None for state in states) else []
     head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "interval (k = 2)", *sampled]
-    head += ["R2", "N/mm", "range N", "range ends at"]
+    head += ["R2", "N/mm at 1 mm", "3 mm", "mean", "range N", "range ends at"]
     rows = []
     for state in states:
         known = None if state.uncertainty is None else state.uncertainty.known.get(SENSITIVITY_KEY)
@@ -121,6 +121,8 @@ def _state_table(states: Sequence[StateRecord]) -> str:
             "-" if known is None else f"{known.low:.2f} to {known.high:.2f}",
             *(_interval(_sampled(state)) for _ in sampled),
             _optional(state.r_squared, ".4f"),
+            _optional(state.stiffness_at_1mm_N_per_mm, ".3f"),
+            _optional(state.stiffness_at_3mm_N_per_mm, ".3f"),
             _optional(state.stiffness_N_per_mm, ".3f"),
             "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
             _range_end(state),

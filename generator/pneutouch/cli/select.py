@@ -40,6 +40,7 @@ SELECT_FIELDS = {
     "force_range": FieldOption("target", "force_range_N"),
     "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
     "stiffness_most": FieldOption("target", "stiffness_most_N_per_mm"),
+    "stiffness_depth": FieldOption("target", "stiffness_depth_mm"),
     "max_diameter": FieldOption("target", "max_diameter_mm"),
     "max_footprint": FieldOption("target", "max_footprint_mm"),
     "fits": FieldOption("target", "fits", metavar="finger:MM"),

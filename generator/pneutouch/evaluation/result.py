@@ -145,12 +145,18 @@ def _state(state: SensorState, *, curves: bool) -> StateRecord:
         nonlinearity_percent=100 * f.nonlinearity if f else None,
         stiffness_N_per_mm=f.stiffness if f else None,
         force_range_N=f.force_range if f else None,
-        saturation_force_N=f.saturation_force if f and np.isfinite(f.saturation_force) else None,
+        saturation_force_N=_finite(f and f.saturation_force),
         curve=Curve(*[()] * 7) if without else _curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
         off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),
+        stiffness_at_1mm_N_per_mm=_finite(f and f.stiffness_1mm),
+        stiffness_at_3mm_N_per_mm=_finite(f and f.stiffness_3mm),
         held=None if state.held is None else HeldRecord(state.held.injected / ML, *state.held[1:]),
     )
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and np.isfinite(value) else None
 
 
 def _curve(state: SensorState) -> Curve:

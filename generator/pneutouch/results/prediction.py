@@ -188,6 +188,10 @@ class StateRecord:
     """Additions of contact off the axis to the curve."""
     uncertainty: UncertaintyRecord | None = None
     """Uncertainty of the figures, or the reason why there is none."""
+    stiffness_at_1mm_N_per_mm: float | None = None
+    """Slope of contact force over indentation at 1 mm; left out where the range ends before."""
+    stiffness_at_3mm_N_per_mm: float | None = None
+    """Slope of contact force over indentation at 3 mm; left out where the range ends before."""
     held: HeldRecord | None = None
     """Filling of a state that is given by it; left out for one at a driving pressure."""
 

@@ -69,6 +69,10 @@ class FoundDesign:
     """Requirement or limit with the least margin, the sensitivity left out."""
     model: str
     """Model that computed it."""
+    stiffness_at_1mm_N_per_mm: float | None = None
+    """Slope of contact force over indentation at 1 mm; left out where the range ends before."""
+    stiffness_at_3mm_N_per_mm: float | None = None
+    """Slope of contact force over indentation at 3 mm; left out where the range ends before."""
     plate_sensitivity_kPa_per_N: float | None = None
     """Sensitivity by the atlas, under a plate without friction; left out if that is the contact."""
     rounds: int | None = None

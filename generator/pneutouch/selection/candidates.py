@@ -91,10 +91,10 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
         margin_of["force range"] = pool.force / problem.force_range - 1.0
     least, most = problem.stiffness
     if least is not None or most is not None:
+        stiffness = lines.stiffness_at(problem.stiffness_depth)
         with np.errstate(divide="ignore"):
             margin_of["stiffness"] = np.minimum(
-                np.inf if least is None else lines.stiffness / least - 1.0,
-                np.inf if most is None else most / lines.stiffness - 1.0,
+                np.inf if least is None else stiffness / least - 1.0, np.inf if most is None else most / stiffness - 1.0
             )
     if problem.max_diameter is not None:
         margin_of["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0

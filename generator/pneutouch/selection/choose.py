@@ -334,8 +334,9 @@ def _off(problem: SelectionProblem, candidate: Candidate, name: str, margin: flo
         return 100.0 * abs(figures.sensitivity / problem.sensitivity - 1.0)
     if name == "stiffness":
         least, most = problem.stiffness
-        bound = least if least is not None and figures.stiffness < least else most
+        stiffness = figures.stiffness_at(problem.stiffness_depth)
+        bound = least if least is not None and stiffness < least else most
         assert bound is not None
-        return 100.0 * abs(figures.stiffness / bound - 1.0)
+        return 100.0 * abs(stiffness / bound - 1.0)
     # A margin to a greatest value is relative to the candidate's own.
     return 100.0 * (1.0 / (1.0 + margin) - 1.0 if name in _MOST else -margin)

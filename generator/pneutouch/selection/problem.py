@@ -59,7 +59,7 @@ class SelectionProblem:
     inner radius (n,). connector: its fit to domes of inner radius and wall (n,), mm; None if no connector matters.
     limit_spread: uncertainty of the limits; None allows driving pressures above the rated one. factors: factors on the
     atlas's figures, for a contact or a law that it does not cover. anywhere: True if the ranking counts an unknown
-    object and place.
+    object and place. stiffness_depth: depth of the required stiffness, mm; None: the mean over the range.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -85,6 +85,7 @@ class SelectionProblem:
     limit_spread: LimitUncertainty | None = None
     factors: ContactFactors | None = None
     anywhere: bool = False
+    stiffness_depth: float | None = None
 
     @property
     def recipe(self) -> AtlasRecipe:

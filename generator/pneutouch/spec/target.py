@@ -27,10 +27,21 @@ class TargetFigures(Table):
         None, unit="N", low=1e-4, high=1e5, help="Contact force that the range must reach."
     )
     stiffness_least_N_per_mm: float | None = number(
-        None, unit="N/mm", low=1e-6, high=1e5, help="Least mean stiffness over the range."
+        None,
+        unit="N/mm",
+        low=1e-6,
+        high=1e5,
+        help="Least stiffness: the mean over the range, or dF/dz at stiffness_depth_mm.",
     )
     stiffness_most_N_per_mm: float | None = number(
-        None, unit="N/mm", low=1e-6, high=1e5, help="Greatest mean stiffness over the range."
+        None,
+        unit="N/mm",
+        low=1e-6,
+        high=1e5,
+        help="Greatest stiffness: the mean over the range, or dF/dz at stiffness_depth_mm.",
+    )
+    stiffness_depth_mm: float | None = number(
+        None, unit="mm", low=1, high=3, help="Depth, 1 or 3, at which the stiffness is bounded; left out: the mean."
     )
     max_diameter_mm: float | None = number(
         None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
@@ -67,6 +78,12 @@ class TargetFigures(Table):
                 f"the least must not exceed the most",
                 "stiffness_least_N_per_mm",
                 "stiffness_most_N_per_mm",
+            )
+        depth = self.stiffness_depth_mm
+        if depth is not None and (depth not in (1, 3) or least is most is None):
+            text = f"stiffness_depth_mm = {depth:g} must be 1 or 3, and bound"
+            raise FieldsError(
+                f"{text} stiffness_least_N_per_mm or stiffness_most_N_per_mm at this depth", "stiffness_depth_mm"
             )
         if all(v is None for v in (self.sensitivity_kPa_per_N, self.force_range_N, least, most)):
             raise FieldsError(

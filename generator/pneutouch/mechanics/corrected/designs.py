@@ -92,6 +92,8 @@ class ContactFactors(NamedTuple):
                 intercept_kPa=slope * force * lines.intercept_kPa,
                 sensitivity_through_origin=slope * lines.sensitivity_through_origin,
                 stiffness=stiffness * lines.stiffness,
+                stiffness_1mm=force * lines.stiffness_1mm,
+                stiffness_3mm=force * lines.stiffness_3mm,
                 force_low=force * lines.force_low,
                 force_high=force * lines.force_high,
                 saturation_force=force * lines.saturation_force,

@@ -223,6 +223,8 @@ def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, 
         rows.append(("Sensitivity", SENSITIVITY_KEY, s * (1 - part), s * (1 + part), text))
     if (f := figures.force_range_N) is not None:
         rows.append(("Force range", "force_range_N", f, _INFINITE, f"at least {f:g} N"))
+    if figures.stiffness_depth_mm is not None:
+        return rows
     if (k := figures.stiffness_least_N_per_mm) is not None:
         rows.append(("Stiffness", STIFFNESS_KEY, k, _INFINITE, f"at least {k:g} N/mm"))
     if (k := figures.stiffness_most_N_per_mm) is not None:

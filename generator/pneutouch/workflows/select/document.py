@@ -145,6 +145,8 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         range_end_mm=float(pool.response.range_end[0]),
         range_ends_with=choice.ends_with,
         stiffness_N_per_mm=figures.stiffness,
+        stiffness_at_1mm_N_per_mm=_known(figures.stiffness_1mm),
+        stiffness_at_3mm_N_per_mm=_known(figures.stiffness_3mm),
         limit_point_kPa=float(pool.response.limit_pressure[0]) / KPA,
         rated_pressure_kPa=choice.rated / KPA,
         above_rated_pressure=choice.margins["rated pressure"] < 0,
@@ -171,7 +173,7 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
     if dropped.requirement == "force range":
         return f"{figures.reach:.3g} N instead of {selection.problem.force_range:g}"
     if dropped.requirement == "stiffness":
-        return f"{figures.stiffness:.3g} N/mm"
+        return f"{figures.stiffness_at(selection.problem.stiffness_depth):.3g} N/mm"
     if dropped.requirement == "footprint":
         return f"{selection.footprint(dropped.best):.4g} mm instead of {selection.problem.max_footprint:g}"
     if dropped.requirement == "rated pressure":
@@ -184,15 +186,15 @@ def relaxed(selection: SelectionRun, dropped: DroppedRequirement) -> tuple[str |
     """Field of the target, ``table.key``, and the value, rounded to the safe side, with which the best design without a
     requirement meets it; None for the rated pressure, as at another pressure the sensitivity is another."""
     pool, figures = dropped.best.pool, dropped.best.pool.figures
-    least = selection.problem.stiffness[0]
+    least, stiffness = selection.problem.stiffness[0], figures.stiffness_at(selection.problem.stiffness_depth)
     if dropped.requirement == "sensitivity":
         return f"target.{SENSITIVITY_KEY}", float(f"{figures.sensitivity:.4g}")
     if dropped.requirement == "force range":
         return "target.force_range_N", _rounded(figures.reach, math.floor)
-    if dropped.requirement == "stiffness" and least is not None and figures.stiffness < least:
-        return "target.stiffness_least_N_per_mm", _rounded(figures.stiffness, math.floor)
+    if dropped.requirement == "stiffness" and least is not None and stiffness < least:
+        return "target.stiffness_least_N_per_mm", _rounded(stiffness, math.floor)
     if dropped.requirement == "stiffness":
-        return "target.stiffness_most_N_per_mm", _rounded(figures.stiffness, math.ceil)
+        return "target.stiffness_most_N_per_mm", _rounded(stiffness, math.ceil)
     if dropped.requirement == "footprint":
         return "target.max_footprint_mm", _rounded(selection.footprint(dropped.best), math.ceil)
     if dropped.requirement == "outer diameter":

@@ -279,6 +279,7 @@ def problem_of(
         driving_pressure=None if required.driving_pressure_kPa is None else required.driving_pressure_kPa * KPA,
         force_range=required.force_range_N,
         stiffness=(required.stiffness_least_N_per_mm, required.stiffness_most_N_per_mm),
+        stiffness_depth=required.stiffness_depth_mm,
         max_diameter=required.max_diameter_mm,
         inner_radius=given.inner_radius_mm,
         wall_thickness=given.wall_thickness_mm,
