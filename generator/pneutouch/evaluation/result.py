@@ -11,7 +11,6 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.dynamics import dynamics
-from pneutouch.evaluation.gauge import gauge_record
 from pneutouch.evaluation.relaxation import viscous
 from pneutouch.evaluation.uncertainty import uncertainties
 from pneutouch.mechanics.prediction import InflationCurve
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
     from pneutouch.mechanics.prediction import CurveOutcome, LimitPoint, Limits, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
-    from pneutouch.results.behaviour import ContactAnywhere
+    from pneutouch.results.behaviour import ContactAnywhere, GaugeFigures
 
 _DIGITS = 6
 """Significant digits: more than the figures have, fewer than differ between processors."""
@@ -92,11 +91,18 @@ def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRec
         predicted(evaluation, samples),
         viscous=viscous(evaluation.viscous_runs),
         dynamics=dynamics(evaluation.bandwidth),
-        gauge=None if evaluation.scene.gauge is None else gauge_record(evaluation),
+        gauge=None if evaluation.scene.gauge is None else _gauge(evaluation),
         mixing_curves=by_mixing_curve(evaluation.curves),
         calibration=_calibrated_by(evaluation),
         aged=_aged(evaluation) if evaluation.options.aged else None,
     )
+
+
+def _gauge(evaluation: Evaluation) -> GaugeFigures:
+    # Most designs name no gauge.
+    from pneutouch.evaluation.gauge import gauge_record
+
+    return gauge_record(evaluation)
 
 
 def by_model(prediction: SensorPrediction, *, curves: bool = True) -> PredictionRecord:

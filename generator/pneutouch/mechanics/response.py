@@ -15,7 +15,7 @@ _LEAST_POINTS = 3
 SHALLOW = (1.0, 3.0)
 """Depths, mm, of the tangent stiffnesses: the paper's stiffness is dF/d(delta) at a depth, its Figure 5(a)."""
 _RESOLVED = 8
-"""Least number of points of a curve whose slope is read: with 8 it is within 4 %, with 14 within 3 % of a fine mesh's."""
+"""Least number of points of a curve whose slope is read: within 4 % of a fine mesh's with 8, within 3 % with 14."""
 _SATURATED = 0.5
 """Share of the fitted slope below which the local slope counts as saturation."""
 
