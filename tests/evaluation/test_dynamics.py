@@ -74,3 +74,15 @@ def test_the_figures_are_stated_in_words(drawn):
     lines = dynamics_lines(dynamics(drawn.bandwidth))
     assert len(lines) == 2
     assert "first resonance" in lines[0] and "data A" in lines[0] and "data B" in lines[1]
+
+
+def test_the_resonance_has_an_interval_until_the_gas_in_the_gauge_is_known(drawn, library):
+    """The interval's lower end is the resonance of a design that states 0.15 mL in its gauge."""
+    changes = {"pneumatics.gauge_volume_mL": 0.15}
+    known = dynamics(evaluate("agilus-dome", changes, model="atlas", library=library).bandwidth).states[0]
+    open_ = dynamics(drawn.bandwidth).states[0]
+    assert known.first_resonance_low_Hz is None
+    assert open_.first_resonance_low_Hz == pytest.approx(known.first_resonance_Hz, rel=0.01)
+    assert open_.resonance_gain_low == pytest.approx(open_.resonance_gain / 1.5, rel=1e-4)
+    measured = evaluate("agilus-dome", {"pneumatics.dead_volume_mL": 5.0}, model="atlas", library=library)
+    assert dynamics(measured.bandwidth).states[0].first_resonance_low_Hz is None

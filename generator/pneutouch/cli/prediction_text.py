@@ -31,7 +31,10 @@ def dynamics_lines(dynamics: Dynamics) -> list[str]:
 def _figures(state: DynamicRecord) -> str:
     parts = []
     if state.first_resonance_Hz is not None:
-        parts.append(f"first resonance {state.first_resonance_Hz:.3g} Hz (gain {state.resonance_gain:.2g})")
+        low_Hz, low = state.first_resonance_low_Hz, state.resonance_gain_low
+        least_Hz, least = ("", "") if low_Hz is None else (f"{low_Hz:.3g} to ", f"{low:.2g} to ")
+        peak_Hz, gain = f"{least_Hz}{state.first_resonance_Hz:.3g} Hz", f"{least}{state.resonance_gain:.2g}"
+        parts.append(f"first resonance {peak_Hz} (gain {gain})")
     if state.bandwidth_3_dB_Hz is not None:
         parts.append(f"gain within 3 dB up to {state.bandwidth_3_dB_Hz:.3g} Hz ({state.bandwidth_limited_by})")
     if state.within_5_percent_Hz is not None:

@@ -125,10 +125,17 @@ class Assembly:
         return self.drawn_volume if stated_mL is None else stated_mL * ML
 
     @property
+    def gauge_volume_known(self) -> float | None:
+        """Gas volume inside the gauge, mL, as the design or the gauge's maker states it; None if neither does."""
+        stated, gauge = self.scene.design.pneumatics.gauge_volume_mL, self.scene.gauge
+        if stated is not None or gauge is None or gauge.inner_volume_mL is None:
+            return stated
+        return gauge.inner_volume_mL.nominal
+
+    @property
     def gauge_volume_mL(self) -> float:
-        """Gas volume inside the gauge, mL; 0 if the design names no gauge or its volume is not known."""
-        gauge = self.scene.gauge
-        return 0.0 if gauge is None or gauge.inner_volume_mL is None else gauge.inner_volume_mL.nominal
+        """Gas volume inside the gauge, mL; 0 if it is not known."""
+        return self.gauge_volume_known or 0.0
 
     @property
     def drawn_volume(self) -> float:

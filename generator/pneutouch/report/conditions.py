@@ -110,12 +110,18 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
     bands = ", ".join(dict.fromkeys(state.bandwidth_limited_by or DASH for state in ends))
     narrow = ", ".join(dict.fromkeys(state.within_5_percent_limited_by or DASH for state in ends))
     resonances_Hz = _values([state.first_resonance_Hz for state in ends], ".3g", "Hz")
+    lowest_Hz = [state.first_resonance_low_Hz for state in ends]
+    lower = (
+        ""
+        if None in lowest_Hz
+        else f"; {_values(lowest_Hz, '.3g', 'Hz')} with 0.15 mL in the gauge, whose volume is not known"
+    )
     bandwidths_Hz = _values([state.bandwidth_3_dB_Hz for state in ends], ".3g", "Hz")
     after = _values([state.delay_ms for state in ends], ".2g", "ms")
     rise = _values([state.rise_time_ms for state in ends], ".2g", "ms")
     return [
         ["At", _values([state.driving_pressure_kPa for state in ends], "g", "kPa"), "driving pressure"],
-        ["First resonance", resonances_Hz, "line as drawn, force at first contact"],
+        ["First resonance", resonances_Hz, f"line as drawn, force at first contact{lower}"],
         ["Bandwidth", bandwidths_Hz, f"gain within 3 dB; limit: {bands}{gauge}"],
         ["Gain within 5 %", _values([state.within_5_percent_Hz for state in ends], ".2g", "Hz"), f"limit: {narrow}"],
         ["Rise time", rise, f"10 to 90 %, step of force; half after {after}"],

@@ -184,6 +184,10 @@ class DynamicRecord:
     """Stiffness of the gas for a sudden change over that for a slow one."""
     fast_wall_over_slow: float | None
     """Stiffness of the wall for a sudden change over that for a slow one."""
+    first_resonance_low_Hz: float | None = None
+    """First resonance with 0.15 mL in a gauge whose volume is not known; left out where it is known."""
+    resonance_gain_low: float | None = None
+    """Gain at that resonance."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,7 +152,7 @@ class Connector(SparseTable):
 class Pneumatics(SparseTable):
     """[pneumatics]: pressures, tube, gauge and gas volume."""
 
-    left_out = ("gauge", "injected_volumes_mL", "apex_heights_mm")
+    left_out = ("gauge", "gauge_volume_mL", "injected_volumes_mL", "apex_heights_mm")
 
     driving_pressures_kPa: Annotated[list[float], _within(-100, 1000, "kPa")] = numbers(
         [0.0, 5.0, 12.0, 22.0],
@@ -188,6 +188,13 @@ class Pneumatics(SparseTable):
     )
     gauge: str | None = name(
         None, registry="gauges", help="Pressure gauge at the end of the tube; left out: the paper's, +-100 kPa."
+    )
+    gauge_volume_mL: float | None = number(
+        None,
+        unit="mL",
+        low=0,
+        high=1000,
+        help="Gas in the gauge's port, chamber and fitting; left out: as its maker states, if so.",
     )
     dead_volume_mL: float | None = number(
         None,

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Complex, Flags
-from pneutouch.mechanics.line.dynamics import SensorDynamics, on_axis
+from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics, on_axis
+from pneutouch.mechanics.line.elements import GasVolume
 
 HALF_POWER = 0.5**0.5
 """Gain at -3 dB; its inverse is the gain at +3 dB."""
@@ -29,6 +30,9 @@ _SLOWEST = 1.0e-4
 
 _BEYOND = 4.0
 """Highest frequency considered, over the half-wave resonance of the ducts, which bounds the first resonance."""
+
+_LOWEST_PEAK = 1.0e-3
+"""Lowest resonance that is looked for, over the highest frequency considered."""
 
 _NO_DUCT = 1.0e4
 """Highest frequency considered for a line without a duct, Hz."""
@@ -74,6 +78,15 @@ def band_figures(dynamics: SensorDynamics) -> BandFigures:
     bandwidth = _leaves(fast, with_peak, lambda gain: np.abs(np.log(gain)) + np.log(HALF_POWER))
     within = _leaves(dynamics, with_peak, lambda gain: np.abs(gain - 1.0) - TOLERANCE)
     return BandFigures(peak, height, bandwidth, within, None if within is None else _limit(dynamics, within), top)
+
+
+def with_end(dynamics: SensorDynamics, volume: float) -> tuple[float, float] | None:
+    """First resonance, Hz, and its gain with so much more gas (mm3) at the gauge; None if there is no resonance."""
+    longer = GasLine((*dynamics.line.elements, GasVolume(volume)), dynamics.line.air)
+    fast, top = replace(dynamics, line=longer).at_once(), highest_frequency(dynamics)
+    grid = np.geomspace(_LOWEST_PEAK * top, top, _POINTS_A_DECADE * 3)
+    peak = _first_peak(fast, grid, gain_at(fast, grid))
+    return None if peak is None else (peak, _one(fast, peak))
 
 
 def highest_frequency(dynamics: SensorDynamics) -> float:
