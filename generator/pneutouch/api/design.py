@@ -35,31 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def plot_section(assembly: Assembly, ax: Axes | None) -> Axes:
-    """Draw the hatched section of all bodies at y = 0 into ``ax`` (None: new), lengths in mm; returns the axes."""
-    from pneutouch.report.section import draw_section
-
-    ax = axes_of(ax)
-    draw_section(ax, assembly)
-    return _scaled(ax)
-
-
-def plot_mould(assembly: Assembly, ax: Axes | None, labels: bool) -> Axes:
-    """Draw one cavity of the closed mould in section, turned over as it is poured. Raises InputError without one."""
-    from pneutouch.report.mould import draw_mould
-
-    if assembly.mould is None:
-        raise InputError(
-            "the membrane is printed, not cast: it has no mould",
-            key="profile",
-            value=assembly.scene.design.print.profile,
-            remedy='give a printer of moulds, such as profile="silicone-casting"',
-        )
-    ax = axes_of(ax)
-    draw_mould(ax, assembly.mould, labels)
-    return _scaled(ax)
-
-
 def _scaled(ax: Axes) -> Axes:
     ax.set_aspect("equal")
     ax.autoscale_view()
@@ -280,14 +255,29 @@ class Design(show.Shown):
 
     def plot_section(self, ax: Axes | None = None) -> Axes:
         """Draw the hatched section of all bodies through the axis, lengths in mm; returns the axes."""
-        return plot_section(self.assembly, ax)
+        from pneutouch.report.section import draw_section
+
+        ax = axes_of(ax)
+        draw_section(ax, self.assembly)
+        return _scaled(ax)
 
     def plot_mould(self, ax: Axes | None = None, *, labels: bool = True) -> Axes:
         """Draw one cavity of the closed mould in section, turned over as it is poured, lengths in mm; returns the axes.
 
         Raises InputError for a membrane that is printed.
         """
-        return plot_mould(self.assembly, ax, labels)
+        from pneutouch.report.mould import draw_mould
+
+        if self.assembly.mould is None:
+            raise InputError(
+                "the membrane is printed, not cast: it has no mould",
+                key="profile",
+                value=self.assembly.scene.design.print.profile,
+                remedy='give a printer of moulds, such as profile="silicone-casting"',
+            )
+        ax = axes_of(ax)
+        draw_mould(ax, self.assembly.mould, labels)
+        return _scaled(ax)
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of the design file, every field with its value."""

@@ -5,11 +5,11 @@ sweep and resins of a selection read every file once (`CachedLibrary`).
 """
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, get_args
 
 from pydantic import BaseModel
 
@@ -18,7 +18,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.grade import MixingCurve
 from pneutouch.spec.material import Material
-from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, Port, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
 
@@ -142,8 +142,11 @@ def _gauge(content: dict[str, Any], where: str) -> BaseModel:
     return validate(Gauge, content, where)
 
 
-def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
-    """Validator of files by the model of the ``family`` that each file names."""
+def _by_family(union: Any) -> ValidateFile:
+    """Validator of files by the model of the ``family`` that each file names, out of a union of models."""
+    models: dict[str, type[BaseModel]] = {
+        family: one for one in get_args(union) for family in get_args(one.model_fields["family"].annotation)
+    }
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
@@ -163,9 +166,9 @@ KINDS: dict[str, FileKind] = {
     "printers": FileKind(_one(Printer), "printprofiles"),
     "gauges": FileKind(_gauge, "printprofiles/gauges"),
     "tubes": FileKind(_one(Tube), "parts/tubes", part=True),
-    "ports": FileKind(_by_family(PORTS), "parts/ports", part=True),
-    "seats": FileKind(_by_family(SEATS), "parts/seats", part=True),
-    "mounts": FileKind(_by_family(MOUNTS), "parts/mounts", part=True),
+    "ports": FileKind(_by_family(Port), "parts/ports", part=True),
+    "seats": FileKind(_by_family(AnySeat), "parts/seats", part=True),
+    "mounts": FileKind(_by_family(AnyMount), "parts/mounts", part=True),
 }
 
 

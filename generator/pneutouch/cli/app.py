@@ -7,7 +7,6 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -241,18 +240,18 @@ def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, fi
         raise InputError(f"{', '.join(given)} cannot be given with {what}", file=file)
 
 
-def print_json(document: Any) -> None:
-    """Print a document, or a record as one, as JSON on stdout."""
+def print_json(document: Any, **more: Any) -> None:
+    """Print a document, or a record as one, with ``more`` keys at its end, as JSON on stdout."""
     from pneutouch.output.files import json_bytes
     from pneutouch.results.record import plain
 
-    put(json_bytes(plain(document)).decode())
+    put(json_bytes({**plain(document), **more}).decode())
 
 
 def print_answer(record: Any, text: Callable[[Any], str], folder: Path | None = None, *, json: bool) -> None:
     """Print a record, with the folder that it was written to if there is one: as JSON, or as ``text`` returns it."""
     if json:
-        print_json(record if folder is None else replace(record, folder=str(folder)))
+        print_json(record, **({} if folder is None else {"folder": str(folder)}))
     else:
         echo(text(record) if folder is None else f"{text(record)}\n\n{folder}")
 

@@ -9,10 +9,9 @@ import typer
 
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import simulators, years_of
-from pneutouch.cli.terminal import bar, echo, notify, table_text
+from pneutouch.cli.terminal import bar, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
-from pneutouch.results.record import plain
 
 
 @cli.app.command("export-reader")
@@ -60,11 +59,8 @@ def export_reader(
     if off_percent > 0.5:
         less = f"--set indentation.depth_mm=VALUE below {result.record.box.indentation_mm[1]:.3g} lessens that"
         notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, above 0.5 %; {less}")
-    if json:
-        cli.print_json({**result.document, "folder": str(folder)})
-    else:
-        echo(reader_text(result.record))
-        echo(f"\n{folder}")
+    cli.print_answer(result.document, lambda document: reader_text(result.record), folder, json=json)
+    if not json:
         files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
         notify(f"how to use it: the examples at the head of {files}")
 
@@ -80,11 +76,7 @@ def _export_simulator(
     with bar("tabulating the press"):
         result = make_simulator(evaluate(design, changed, **options), simulator)
         folder = write_simulator(result, out)
-    if json:
-        cli.print_json({**plain(result.record), "folder": str(folder)})
-    else:
-        echo(simulator_text(result.record))
-        echo(f"\n{folder}")
+    cli.print_answer(result.record, simulator_text, folder, json=json)
 
 
 def reader_text(record: ReaderRecord) -> str:

@@ -1,6 +1,5 @@
 """``pneutouch fit-material``: a tensile or puck test of a laboratory made into a material file."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -38,7 +37,7 @@ def fit_material(
     for note in report.notes:
         notify(f"note: {note}")
     if json:
-        print_json(replace(report, folder=str(folder)))
+        print_json(report, folder=str(folder))
         return
 
     echo(fit_text(report))

@@ -14,7 +14,7 @@ from pneutouch.cli.complete import percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
 from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.results.record import SENSITIVITY_KEY, plain
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.selection import GradedRecord
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_numbers
@@ -171,7 +171,7 @@ def _refuse(target: Target, **given: bool) -> None:
 def _report(answer: "TargetAnswer", path: Path | None, *, json: bool) -> None:
     """Show the answer, and where the design picked was saved. Exits 1 if no design meets the target."""
     if json:
-        print_json({**plain(answer.record), "written": None if path is None else str(path)})
+        print_json(answer.record, written=None if path is None else str(path))
     else:
         from pneutouch.cli.select_text import answer_text
 

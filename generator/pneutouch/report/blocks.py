@@ -219,16 +219,8 @@ def section(title: str, *blocks: SheetBlock, level: int = 2) -> list[SheetBlock]
 
 def _holds(block: SheetBlock) -> bool:
     match block:
-        case SheetTable():
-            return bool(block.rows)
-        case Items():
-            return bool(block.lines)
-        case Plots():
-            return bool(block.plots)
-        case Tiles():
-            return bool(block.tiles)
-        case Text():
-            return bool(block.text)
+        case SheetTable(held) | Items(held) | Plots(held) | Tiles(held) | Text(held):
+            return bool(held)
         case _:
             return True
 

@@ -198,22 +198,6 @@ class Sleeve(Mount):
 
 AnyMount = PlainPlate | BoltCircle | RobotFlange | Sleeve
 
-PORTS: dict[str, type[Part]] = {"barb": Barb, "thread": Thread, "luer": Luer, "push-in": PushIn}
-SEATS: dict[str, type[Part]] = {
-    "glued-flange": GluedFlange,
-    "clamped-flange": ClampedFlange,
-    "one-piece": OnePiece,
-    "cast-ring": CastRing,
-}
-MOUNTS: dict[str, type[Part]] = {
-    "plain": PlainPlate,
-    "through": BoltCircle,
-    "blind": BoltCircle,
-    "robot-flange": RobotFlange,
-    "sleeve": Sleeve,
-}
-"""Models of ports, seats and mounts by the family that a file names; the model declares the keys of the file."""
-
 
 class PerforatedRing(Table):
     """[cast_ring]: the web of the ring, which the silicone encloses, and its holes.
