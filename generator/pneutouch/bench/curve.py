@@ -39,13 +39,10 @@ LOADING_POINTS = 25
 
 _BEYOND_TRAVEL = 1.05
 
-_LAG_COUNTS, _EARLY = 0.01, 0.2
+_LAG_COUNTS, _EARLY, _GOES_ON, _AT_END = 0.01, 0.2, 0.004, 0.1
 """Change of a channel at its steepest over a lag, as a share of its span, or of a figure, from which on a lag is asked
-about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too: our choice."""
-
-
-_GOES_ON, _AT_END = 0.004, 0.1
-"""Shares of its span by which a force grows in a stay of a coarse travel, and of a stage at its end: our choice."""
+about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too; shares of its span
+by which a force grows in a stay of a coarse travel, and of a stage at its end: our choice."""
 
 
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
@@ -165,12 +162,10 @@ def _changed(run: CampaignRun, blocks: Blocks, points: Points, *, steps: bool) -
         others = _read(run, blocks, find_indents(blocks, by_hand=run.kind == "hand"), steps=steps)[0]
     except InputError:
         return 0.0
-    was, would = figures(*points), figures(*others)
-    if was is None or would is None:
+    if (was := figures(*points)) is None or (would := figures(*others)) is None:
         return 0.0
-    keys = ("sensitivity", "force_high") if run.kind == "hand" else ("sensitivity", "stiffness", "force_high")
-    pairs = [(float(getattr(was, key)), float(getattr(would, key))) for key in keys]
-    return max(abs(there - here) / max(abs(here), 1e-300) for here, there in pairs)
+    pairs = [(getattr(was, key), getattr(would, key)) for key in ("sensitivity", "stiffness", "force_high")]
+    return float(max(abs(there - here) / max(abs(here), 1e-300) for here, there in pairs))
 
 
 def _without_spikes(blocks: Blocks) -> Blocks:

@@ -11,7 +11,7 @@ from numpy.polynomial.legendre import legvander
 from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.statistics import Estimate, mean_of, spread_between, spread_within, widened
-from pneutouch.mechanics.response import Figures, figures, hysteresis
+from pneutouch.mechanics.response import Figures, Of, figures, hysteresis
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
@@ -78,24 +78,10 @@ force, which is nearer to the travel than the force: the fewest that follow the 
 
 _LEAST_SAMPLES = 40
 
-_SATURATION, _DRIFT = "saturation_force_N", "drift_pressure_kPa_per_min"
+SATURATION_KEY, _DRIFT = "saturation_force_N", "drift_pressure_kPa_per_min"
 
 COVERED = 1.96
 """Half-width of a 95 % interval in standard errors, for a slope over some hundred blocks."""
-
-_OF_LINE = frozenset(
-    {
-        SENSITIVITY_KEY,
-        "sensitivity_through_origin_kPa_per_N",
-        "r_squared",
-        "nonlinearity_percent",
-        STIFFNESS_KEY,
-        "force_range_N",
-        _SATURATION,
-        "resolution_N",
-    }
-)
-"""Keys of the figures of a loading curve, and of the resolution, which is derived from them."""
 
 _ENDS = 0.15
 """Decades at either end of a hold over which a line gives the value at the end: one block would give its noise."""
@@ -122,15 +108,15 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
     if got is None:
         return {}
     values = line_figures(got)
-    saturation = values.pop(_SATURATION, None)
+    saturation = values.pop(SATURATION_KEY, None)
     if saturating:
-        saturated = {} if saturation is None else {_SATURATION: saturation}
+        saturated = {} if saturation is None else {SATURATION_KEY: saturation}
         return {**saturated, "sensing_range_N": got.force_range[1] if saturation is None else saturation}
     return values
 
 
-def line_figures(got: Figures[float]) -> dict[str, float]:
-    """Figures of a loading curve by key of `FIGURES`; without a saturation force if it is not finite."""
+def line_figures(got: Figures[Of]) -> dict[str, Of]:
+    """Figures of one loading curve, or of many, by key of `FIGURES`; without a saturation force if it is not finite."""
     return {
         SENSITIVITY_KEY: got.sensitivity,
         "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
@@ -138,8 +124,12 @@ def line_figures(got: Figures[float]) -> dict[str, float]:
         "nonlinearity_percent": 100 * got.nonlinearity,
         STIFFNESS_KEY: got.stiffness,
         "force_range_N": got.force_range[1],
-        **({_SATURATION: got.saturation_force} if np.isfinite(got.saturation_force) else {}),
+        **({SATURATION_KEY: got.saturation_force} if np.isfinite(got.saturation_force).all() else {}),
     }
+
+
+_OF_LINE = {*line_figures(Figures(*9 * (0.0,))), "resolution_N"}
+"""Keys of the figures of a loading curve, and of the resolution, which is derived from them."""
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:

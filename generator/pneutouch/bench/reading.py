@@ -249,10 +249,10 @@ def _clipped(
 
 def _within(column: Column, key: str, times: float) -> list[str]:
     """Questions on units of a channel that bring it, at so many times its instrument's range, well within it."""
-    scaled_by = {unit: factor / UNITS[key][column.unit] for unit, factor in UNITS[key].items() if ABSOLUTE not in unit}
-    found = {by: unit for unit, by in reversed(scaled_by.items()) if _USED < by * times <= BEYOND}
-    options = {unit: as_option(**{key: column.model_copy(update={"unit": unit})}) for unit in found.values()}
-    return [f"is it in {unit} ({option})?" for unit, option in reversed(options.items())]
+    declared, gauges = UNITS[key][column.unit], {u: by for u, by in UNITS[key].items() if ABSOLUTE not in u}
+    found = [unit for unit, factor in gauges.items() if _USED < times * factor / declared <= BEYOND]
+    options = (as_option(**{key: column.model_copy(update={"unit": unit})}) for unit in found)
+    return [f"is it in {unit} ({option})?" for unit, option in zip(found, options, strict=True)]
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
@@ -289,7 +289,6 @@ LEAST_POINTS = 3
 INJECTION = ("volume", "pressure")
 """Channels of an injection run."""
 
-_LEAST_BLOCKS = 10
 _BATCHES = 10
 """Parts of a leak run whose means give the slope's error: from single samples, correlated noise makes it too small."""
 
@@ -349,8 +348,8 @@ def leak_rate(time: Array, pressure: Array) -> tuple[float, float]:
 
     The rate is the slope of the least-squares line, its error from the scatter of the means of ten equal parts about
     that line (this takes correlated noise into account). Raises InputError for fewer than ten points."""
-    if time.size < _LEAST_BLOCKS:
-        raise InputError(f"a leak run of {time.size} points; at least {_LEAST_BLOCKS}")
+    if time.size < _BATCHES:
+        raise InputError(f"a leak run of {time.size} points; at least {_BATCHES}")
     parts = np.array_split(np.arange(time.size), _BATCHES)
     at = np.array([time[part].mean() for part in parts])
     mean = np.array([pressure[part].mean() for part in parts])

@@ -109,10 +109,6 @@ class Estimate:
     runs: int
     over: str
 
-    def holds(self, truth: float) -> bool:
-        """True if there is an interval and it holds ``truth``."""
-        return self.low is not None and self.high is not None and self.low <= truth <= self.high
-
 
 def mean_of(groups: Sequence[Array]) -> Estimate:
     """Mean over specimens of their means over runs; ``groups`` has one array of runs, not empty, for each specimen.

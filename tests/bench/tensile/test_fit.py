@@ -58,7 +58,7 @@ def test_constants_come_back(form):
 def test_the_law_taken_is_within_five_percent_of_what_made_the_data(modulus, stiffening):
     made = curve("yeoh", (0.5 * modulus, 0.5 * modulus * stiffening))
     choice = choose_law([made], largest=2.5, slack=0.0)
-    assert choice.good
+    assert choice.law.misfit <= MISFIT
     inside = STRETCH[(STRETCH >= 1.1) & (STRETCH <= 2.5)]
     assert choice.law.stress(inside) == pytest.approx(
         tension("yeoh", (0.5 * modulus, 0.5 * modulus * stiffening), inside), rel=1.6 * MISFIT

@@ -121,16 +121,12 @@ def stopped(curves: PressCurves, force: float, pressure: float) -> PressCurves:
 
 
 def _stopped(curve: PressCurve, force: float, pressure: float) -> PressCurve:
-    travel = np.linspace(0.0, curve.reach, _GRID)
-    forces, rises = curve.at(travel)
-    over = np.flatnonzero((forces > force) | (curve.driving + rises > pressure))
+    over = np.flatnonzero((curve.force > force) | (curve.driving + curve.rise > pressure))
     if not over.size:
         return curve
-    end = max(int(over[0]) - 1, 1)
-    keep, ends = curve.indentation < travel[end], ("the end of the rig's range", float(travel[end]))
-    points = ((curve.indentation, travel), (curve.force, forces), (curve.rise, rises))
-    depth, force_to, rise_to = (np.append(values[keep], fine[end]) for values, fine in points)
-    return PressCurve(curve.driving, depth, force_to, rise_to, ends)
+    to = slice(0, max(int(over[0]), _LEAST_POINTS))
+    ends = "the end of the rig's range", float(curve.indentation[to][-1])
+    return PressCurve(curve.driving, curve.indentation[to], curve.force[to], curve.rise[to], ends)
 
 
 _WAVES = 3

@@ -6,6 +6,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.figures import FIRST, SATURATION_KEY, line_figures
 from pneutouch.bench.indents import RunProtocol, protocol
 from pneutouch.bench.simulate.curve import ModelDeviation, PressCurve, PressCurves
 from pneutouch.bench.simulate.rig import (
@@ -21,7 +22,7 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
 from pneutouch.mechanics.response import Figures, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.campaign import RunKind
 from pneutouch.units import KPA
 
@@ -159,19 +160,7 @@ _ENOUGH = 0.5
 """Least share of the specimens that must reach every depth for a population to be made of them."""
 
 _LOOP_RATE = 1000.0
-_FIRST = 1.0
-"""Seconds into the hold from which relaxation is counted: the plate no longer oscillates."""
-
 _INSTANTS = 200
-_KEYS = (
-    (SENSITIVITY_KEY, "sensitivity", 1.0),
-    ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin", 1.0),
-    ("r_squared", "r_squared", 1.0),
-    ("nonlinearity_percent", "nonlinearity", 100.0),
-    (STIFFNESS_KEY, "stiffness", 1.0),
-    ("force_range_N", "force_high", 1.0),
-)
-"""Figures of a loading curve: key, field of `Figures`, and factor from the field to the key's unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,7 +218,7 @@ def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, r
     noise = truth.rig.noise(rate)
     return {
         **loading_figures,
-        "saturation_force_N": saturation if np.isfinite(saturation) else None,
+        SATURATION_KEY: saturation if np.isfinite(saturation) else None,
         **loop_figures(curve, truth, height),
         **relaxation_figures(curve, truth, height),
         "noise_force_N": noise[0],
@@ -271,7 +260,7 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float)
     step = depth[0] / test.speed / 2000
     ramp = np.stack(curve.at(np.linspace(0.0, depth[0], 2001)), axis=1)
     start = [term[-1] for term in truth.wall.terms(ramp, step)]
-    time = np.geomspace(_FIRST, test.hold, _INSTANTS)
+    time = np.geomspace(FIRST, test.hold, _INSTANTS)
     values = {}
     rig, wall = truth.rig, truth.wall
     for k, (name, level, shares, drift) in enumerate(
@@ -303,8 +292,8 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
     here, kept = drawn
     base = _by_key(Figures(*(column[:1] for column in here)))
     mean, spread = dict(nominal), {}
-    for key, name, factor in _KEYS:
-        values = factor * getattr(here, name)[1:]
+    for key in base:
+        values = line_figures(here)[key][1:]
         simulated, tabulated = nominal[key], base[key]
         scale = simulated / tabulated if simulated is not None and tabulated else 1.0
         mean[key], spread[key] = float(scale * values.mean()), float(scale * values.std(ddof=1))
@@ -357,7 +346,8 @@ def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: Wal
 
 
 def _by_key(arrays: Figures[Array]) -> dict[str, float | None]:
-    return {key: float(factor * np.ravel(getattr(arrays, name))[0]) for key, name, factor in _KEYS}
+    """First figures of a loading curve by key, but for the saturation, which is the deepest curve's."""
+    return {key: float(np.ravel(values)[0]) for key, values in line_figures(arrays).items() if key != SATURATION_KEY}
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:

@@ -139,11 +139,6 @@ class LawChoice:
         """The neo-Hookean law over the same range."""
         return self.fits[0]
 
-    @property
-    def good(self) -> bool:
-        """True if the law taken is within `MISFIT` of the data."""
-        return self.law.misfit <= MISFIT
-
 
 def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, slack: float | None = None) -> LawChoice:
     """Fit the laws to the curves and take the first good one; without one, that of fewest constants near the best fit.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.questions import check_leak, check_unpressed, looks_absolute
+from pneutouch.bench.questions import RESET_KPA, RESET_SHARE, check_leak, check_unpressed, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import Blocks, MeasuredCurve, Trace, trace
 from pneutouch.bench.source import MeasuredFile, MissingChannelError, as_option, campaign_lines, identify
@@ -141,10 +141,6 @@ makes hardly any two readings the same."""
 
 _ROUNDED = 5e-5
 """Greatest difference of all readings of two runs, as a share of the greatest, up to which one is the other rounded."""
-
-_NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
-"""Largest difference, in kPa and relative, of the pressure before contact from a driving pressure of the design at
-which the run is taken to be at that: a reset's scatter."""
 
 
 @dataclass
@@ -336,7 +332,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: Camp
     read_kPa = curve.driving / KPA
     stated_kPa = scene.design.pneumatics.driving_pressures_kPa
     nearest_kPa = min(stated_kPa, key=lambda p: abs(p - read_kPa))
-    near = abs(nearest_kPa - read_kPa) <= max(_NEAR_KPA, _NEAR_SHARE * nearest_kPa)
+    near = abs(nearest_kPa - read_kPa) <= max(RESET_KPA, RESET_SHARE * nearest_kPa)
     column = gathered.sources[curve.run.file].columns.pressure
     units, declared = UNITS["pressure"], column.unit.removesuffix(ABSOLUTE)
     # In a smaller unit too: hectopascals under a heading of kilopascals are no driving pressure.

@@ -282,14 +282,10 @@ def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float
     squares."""
     new, old = fresh.figures[SENSITIVITY_KEY], aged.figures[SENSITIVITY_KEY]
     value = 100 * (old.value - new.value) / old.value
-    if new.high is None or old.high is None:
+    shares = [(each.high - each.value) / each.value for each in (new, old) if each.high is not None]
+    if len(shares) < 2:
         return value, None, None
-    half = (
-        100
-        * float(np.hypot((new.high - new.value) / new.value, (old.high - old.value) / old.value))
-        * new.value
-        / old.value
-    )
+    half = 100 * math.hypot(*shares) * new.value / old.value
     return value, value - half, value + half
 
 
