@@ -240,5 +240,7 @@ def test_the_stored_coverage_is_what_the_code_gives_today(count):
     for campaign in campaigns:
         for group in campaign:
             true = cell.truth[group.key.driving_pressure_kPa]
-            held += [e.low <= true[key] <= e.high for key, e in group.figures.items() if key in true and e.low is not None]
+            held += [
+                e.low <= true[key] <= e.high for key, e in group.figures.items() if key in true and e.low is not None
+            ]
     assert np.mean(held) > 0.8
