@@ -146,7 +146,6 @@ def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path)
     assert np.array_equal(table.to_pandas().to_numpy(), csv.to_numpy())
 
 
-@pytest.mark.slow
 def test_a_press_ends_where_the_rig_stops_and_is_read_to_there(library, tmp_path):
     """This resin takes twice the range of the rig's force sensor at the protocol's depth."""
     asked = changed(
@@ -164,6 +163,7 @@ def test_a_press_ends_where_the_rig_stops_and_is_read_to_there(library, tmp_path
     assert known["force_range_N"] < 36.0 < 40.0
 
 
+@pytest.mark.slow
 def test_what_stops_short_is_said(library, tmp_path):
     asked = changed(
         ASKED,
