@@ -23,8 +23,7 @@ from pneutouch.mechanics.solid.inflate import Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
-from pneutouch.mechanics.solid.second_variation import HarmonicSolid
-from pneutouch.mechanics.solid.sway import unstable_waves
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid, unstable_waves
 from pneutouch.shape.hemisphere import Hemisphere
 
 PUBLISHED = 0.8

@@ -7,9 +7,8 @@ __version__ = "1.0.0"
 
 _HOMES = {
     "api.design": ("Design", "load"),
-    "api.driving": ("DrivingResult",),
     "api.prediction": ("FigureValue", "PredictedState", "Prediction"),
-    "api.results": ("CheckResult", "Result"),
+    "api.results": ("CheckResult", "DrivingResult", "Result"),
     "api.search": ("Selection", "map_sweep", "select", "sweep"),
     "api.comparison": ("Comparison", "compare"),
     "api.measuring": (

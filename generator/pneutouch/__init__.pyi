@@ -2,7 +2,6 @@ from pneutouch.api.comparison import Comparison as Comparison
 from pneutouch.api.comparison import compare as compare
 from pneutouch.api.design import Design as Design
 from pneutouch.api.design import load as load
-from pneutouch.api.driving import DrivingResult as DrivingResult
 from pneutouch.api.measuring import FittedSensor as FittedSensor
 from pneutouch.api.measuring import calibrate as calibrate
 from pneutouch.api.measuring import characterize as characterize
@@ -15,6 +14,7 @@ from pneutouch.api.prediction import FigureValue as FigureValue
 from pneutouch.api.prediction import PredictedState as PredictedState
 from pneutouch.api.prediction import Prediction as Prediction
 from pneutouch.api.results import CheckResult as CheckResult
+from pneutouch.api.results import DrivingResult as DrivingResult
 from pneutouch.api.results import Result as Result
 from pneutouch.api.search import Selection as Selection
 from pneutouch.api.search import map_sweep as map_sweep

@@ -206,7 +206,7 @@ def test_a_shallow_press_is_left_to_the_solid(depth):
     sensor = Sensor(Dome(Hemisphere(9.2428, 1.174)), wall, gas, press)
     auto, solid = (predict("", sensor, [7.2388 * KPA], model=model) for model in ("auto", "solid"))
     assert auto.model == "solid"
-    assert auto.states[0].figures == solid.states[0].figures
+    np.testing.assert_equal(tuple(auto.states[0].figures), tuple(solid.states[0].figures))
     if depth < 0.1:
         with pytest.raises(InputError, match="depth"):
             predict("", sensor, [7.2388 * KPA], model="atlas")

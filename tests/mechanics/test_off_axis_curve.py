@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.result import off_axis
-from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
+from pneutouch.mechanics.harmonic.press import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.results.record import plain as data
 
 TRAVEL = np.array([0.0, 0.5, 1.0])

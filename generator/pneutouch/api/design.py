@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
-from pneutouch.api.driving import DrivingResult, tasks_of
 from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, number_of, plain
 from pneutouch.api.prediction import Prediction, axes_of
-from pneutouch.api.results import CheckResult
+from pneutouch.api.results import CheckResult, DrivingResult, tasks_of
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.catalogue.scene import check_kind, membrane_material_of

@@ -128,7 +128,7 @@ def line_figures(got: Figures[Of]) -> dict[str, Of]:
     }
 
 
-_OF_LINE = {*line_figures(Figures(*9 * (0.0,))), "resolution_N"}
+_OF_LINE = {*line_figures(Figures(*(0.0 for _ in Figures._fields))), "resolution_N"}
 """Keys of the figures of a loading curve, and of the resolution, which is derived from them."""
 
 

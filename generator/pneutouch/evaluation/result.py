@@ -39,7 +39,7 @@ from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
+    from pneutouch.mechanics.harmonic.press import OffAxisCurve, ShearCurve
     from pneutouch.mechanics.prediction import CurveOutcome, LimitPoint, Limits, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.results.behaviour import ContactAnywhere, GaugeFigures

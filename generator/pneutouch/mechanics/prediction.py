@@ -20,7 +20,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.object_contact import PressedFace
-    from pneutouch.mechanics.off_axis_curve import OffAxisCurve
+    from pneutouch.mechanics.harmonic.press import OffAxisCurve
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,6 @@ import numpy as np
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.response import SHALLOW
 from pneutouch.report import prose
 from pneutouch.report.blocks import SheetBlock, SheetTable, Tile, section
 from pneutouch.report.certainty import interval
@@ -168,7 +167,7 @@ def performance(sheet: SheetData) -> SheetTable:
     """Table of performance, with one row per driving pressure."""
     pairs = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
     rows = [_state(sheet, state, interval(document) or DASH) for state, document in pairs]
-    return SheetTable(rows, prose.WORDS["performance"]["head"], numeric=range(12), turned=True)
+    return SheetTable(rows, prose.WORDS["performance"]["head"], numeric=range(10), turned=True)
 
 
 def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
@@ -177,8 +176,9 @@ def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
     heights = f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}"
     beside = width, _published(sheet, pressure_kPa)
     driving = f"{pressure_kPa:g}{' *' * _is_above(sheet, s)}"
-    shallow = [DASH if f is None or np.isnan(k := f.stiffness_at(d)) else f"{k:.2f}" for d in SHALLOW]
-    return [driving, *heights, _sensitivity(s), *beside, *line, _stiffness(s), *shallow, _range(s), _ends(s)]
+    shallow = [DASH if np.isnan(k) else f"{k:.2f}" for k in (() if f is None else (f.stiffness_1mm, f.stiffness_3mm))]
+    stiffness = "; ".join([_stiffness(s), *([", ".join(shallow)] if shallow else [])])
+    return [driving, *heights, _sensitivity(s), *beside, *line, stiffness, _range(s), _ends(s)]
 
 
 def _published(sheet: SheetData, pressure_kPa: float) -> str:

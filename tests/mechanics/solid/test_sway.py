@@ -13,8 +13,7 @@ from pneutouch.mechanics.solid.inflate import at_volume, between, inflate, press
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, minimise
-from pneutouch.mechanics.solid.second_variation import HarmonicSolid
-from pneutouch.mechanics.solid.sway import unstable_waves
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid, unstable_waves
 from pneutouch.shape.hemisphere import Hemisphere
 
 R0, DEPTH = 9.25, 6.94

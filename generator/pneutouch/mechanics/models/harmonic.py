@@ -11,7 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.friction_path import ShearPath
-from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
+from pneutouch.mechanics.harmonic.press import OffAxisCurve, OffAxisPath, OffAxisPress, RangeCurve, ShearCurve
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
@@ -24,7 +24,6 @@ from pneutouch.mechanics.models.solid import (
     solid_probe,
     solid_result,
 )
-from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.sensor import Filling, Sensor

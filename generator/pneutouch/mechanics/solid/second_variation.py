@@ -14,7 +14,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_AH, BY_HH, BY_J, BY_JH, Strain
-from pneutouch.mechanics.solid.banded import AssemblyPattern
+from pneutouch.mechanics.solid.banded import AssemblyPattern, is_definite
 from pneutouch.mechanics.solid.elements import (
     AXIAL,
     F_RR,
@@ -336,3 +336,8 @@ def _fix(band: Array, unknowns: Index) -> None:
         band[back, unknown - back] = 0.0
         band[:, unknown] = 0.0
         band[0, unknown] = largest
+
+
+def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
+    """Numbers of waves, among those given, for which the second variation at a state is not positive definite."""
+    return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))

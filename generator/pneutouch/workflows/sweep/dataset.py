@@ -35,6 +35,8 @@ from pneutouch.workflows.sweep.variables import (
     POINT,
     STATE,
     SweepVariable,
+    empty_columns,
+    fill_row,
     missing_reasons,
 )
 from pneutouch.workflows.sweep.work import Record, SweepStudy
@@ -90,29 +92,18 @@ def _columns(points: FinishedPoints, records: Iterable[Record], size: int) -> di
     study, widths = points.study, points.widths
     shape, dims, pressures_kPa = (size, *study.plan.shape[1:]), study.plan.dimensions, study.pressures_kPa
     count = math.prod(shape)
-    states, values = _empty(STATE, count * len(pressures_kPa), widths), _empty(POINT, count, widths)
+    states, values = empty_columns(STATE, count * len(pressures_kPa), widths), empty_columns(POINT, count, widths)
     for k, record in enumerate(records):
-        _fill(values, k, record["values"])
+        fill_row(values, k, record["values"])
         requested_kPa = study.point(record["point"]).driving_pressures_kPa
         for pressure_kPa, state in zip(requested_kPa, record["states"], strict=True):
-            _fill(states, k * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
+            fill_row(states, k * len(pressures_kPa) + pressures_kPa.index(pressure_kPa), state)
     every = (STATE, states, (*shape, len(pressures_kPa)), (*dims, PRESSURE)), (POINT, values, shape, dims)
     return {
         v.name: _variable(v, columns[v.name].reshape(form), names)
         for variables, columns, form, names in every
         for v in variables
     }
-
-
-def _empty(variables: Sequence[SweepVariable], count: int, widths: dict[str, int]) -> dict[str, np.ndarray]:
-    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
-    return {v.name: np.zeros(count, f"S{widths[v.name]}") if v.text else np.full(count, np.nan) for v in variables}
-
-
-def _fill(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
-    for name, value in values.items():
-        if value is not None and name in columns:
-            columns[name][row] = value.encode() if isinstance(value, str) else value
 
 
 def _layout(path: Path) -> np.dtype[np.void]:

@@ -115,6 +115,18 @@ def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
     return {variable.name: variable.read(prediction) for variable in POINT}
 
 
+def empty_columns(variables: Sequence[SweepVariable], count: int, widths: dict[str, int]) -> dict[str, np.ndarray]:
+    """Arrays (count,) by name for the values of variables: NaN, or an empty text, where nothing is filled in."""
+    return {v.name: np.zeros(count, f"S{widths[v.name]}") if v.text else np.full(count, np.nan) for v in variables}
+
+
+def fill_row(columns: dict[str, np.ndarray], row: int, values: dict[str, Any]) -> None:
+    """Put the known values of a row into their columns."""
+    for name, value in values.items():
+        if value is not None and name in columns:
+            columns[name][row] = value.encode() if isinstance(value, str) else value
+
+
 def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[list[Interval]]:
     """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as ``predict`` states them;
     None where it is unknown. All sensors in one pass through the atlas, their sources once for those alike."""
