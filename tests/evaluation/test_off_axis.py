@@ -8,9 +8,9 @@ from pneutouch.catalogue.scene import load_scene
 from pneutouch.cli.prediction_text import _sheared
 from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
-from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.evaluation.result import by_model
+from pneutouch.evaluation.sheet import object_section
 from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.models.choice import USUAL, models_for

@@ -18,7 +18,7 @@ from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.relaxation import viscous, viscous_runs
 from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.evaluation.sheet import ageing_data, sheet_data
-from pneutouch.mechanics.viscous.prony import ageing_ratio
+from pneutouch.mechanics.viscous.describe import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import relaxation
 from pneutouch.report.blocks import Items, Plot, SheetTable, found

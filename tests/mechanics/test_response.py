@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.response import figures, hysteresis, saturation_force, tangent_stiffness
+from pneutouch.mechanics.response import figures, saturation_force, tangent_stiffness
+from pneutouch.mechanics.viscous.runs import hysteresis
 
 
 @given(st.floats(0.1, 50), st.floats(-3, 3), st.floats(0.2, 20))

@@ -8,8 +8,9 @@ import pytest
 from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.contact_object import check_shape, object_section
+from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.sheet import object_section
 from pneutouch.export.simulator.model import moving_share
 from pneutouch.mechanics.models.solid import solid_probe
 from pneutouch.parts import assemble

@@ -11,7 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from pneutouch.cli.complete import years_of
+from pneutouch.cli.export_reader import years_of
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.reader import ROWS, _driving_pressures, reader_grid

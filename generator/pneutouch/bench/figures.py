@@ -11,7 +11,8 @@ from numpy.polynomial.legendre import legvander
 from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.statistics import Estimate, mean_of, spread_between, spread_within, widened
-from pneutouch.mechanics.response import Figures, Of, figures, hysteresis
+from pneutouch.mechanics.response import Figures, Of, figures
+from pneutouch.mechanics.viscous.runs import hysteresis
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 

@@ -31,19 +31,6 @@ def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
     return complete
 
 
-def coupon_names(incomplete: str) -> list[str]:
-    """Completions of the last of several names of coupons with commas between."""
-    from pneutouch.spec.coupon import COUPON_NAMES
-
-    before, comma, word = incomplete.rpartition(",")
-    return [f"{before}{comma}{name}" for name in COUPON_NAMES if name.startswith(word)]
-
-
-def simulators(incomplete: str) -> list[str]:
-    """Completions of the name of a simulator."""
-    return [name for name in ("mujoco", "urdf") if name.startswith(incomplete)]
-
-
 def assignment(incomplete: str) -> list[str]:
     """Completions of ``table.key=``, and after it of a name where the key takes one."""
     from pneutouch.spec.design import DesignFile
@@ -62,13 +49,6 @@ def assignment(incomplete: str) -> list[str]:
     return [f"{key}={name}" for name in names(registry, listed=True)(word)] if registry else []
 
 
-def document_kinds(incomplete: str) -> list[str]:
-    """Completions of the name of a kind of document."""
-    from pneutouch.schemas import document_kinds as known
-
-    return [name for name in known() if name.startswith(incomplete)]
-
-
 def percent_of(text: str, parameter: str) -> float:
     """Percentage that a text states, above 0, at most 100; below 1 without % it is a share. Raises InputError."""
     number = text.strip().removesuffix("%").strip()
@@ -85,22 +65,6 @@ def percent_of(text: str, parameter: str) -> float:
             f"note: {flag} {number} is taken as a share, {100 * value:.12g} %; {number} per cent is {flag} {number}%"
         )
         value *= 100.0
-    return value
-
-
-_DAYS = {"d": 1.0, "w": 7.0, "m": 365.0 / 12.0, "y": 365.0}
-
-
-def years_of(text: str, parameter: str) -> float:
-    """Years, from 0 to 1, of a time such as 90d, 8w, 6m or 1y. Raises InputError."""
-    number, unit = text.strip()[:-1], text.strip()[-1:]
-    try:
-        value = plain_number(number) * _DAYS[unit] / _DAYS["y"]
-    except (ValueError, KeyError):
-        value = float("nan")
-    if not 0.0 <= value <= 1.0:
-        problem = "it must be a time of at most a year with its unit, such as 90d, 8w, 6m or 1y"
-        raise InputError(problem, key=parameter, value=text)
     return value
 
 

@@ -7,10 +7,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_answer, print_json
-from pneutouch.cli.complete import coupon_names, names
+from pneutouch.cli.complete import names
 from pneutouch.cli.declared import words
 from pneutouch.cli.terminal import bar, echo, report_next, table_text
 from pneutouch.results.coupons import CouponReport
+
+
+def coupon_names(incomplete: str) -> list[str]:
+    """Completions of the last of several names of coupons with commas between."""
+    from pneutouch.spec.coupon import COUPON_NAMES
+
+    before, comma, word = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in COUPON_NAMES if name.startswith(word)]
+
 
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions

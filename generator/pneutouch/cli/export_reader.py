@@ -8,10 +8,31 @@ from typing import Annotated, Any
 import typer
 
 from pneutouch.cli import app as cli
-from pneutouch.cli.complete import simulators, years_of
 from pneutouch.cli.terminal import bar, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
+from pneutouch.spec.values import plain_number
+
+
+def simulators(incomplete: str) -> list[str]:
+    """Completions of the name of a simulator."""
+    return [name for name in ("mujoco", "urdf") if name.startswith(incomplete)]
+
+
+_DAYS = {"d": 1.0, "w": 7.0, "m": 365.0 / 12.0, "y": 365.0}
+
+
+def years_of(text: str, parameter: str) -> float:
+    """Years, from 0 to 1, of a time such as 90d, 8w, 6m or 1y. Raises InputError."""
+    number, unit = text.strip()[:-1], text.strip()[-1:]
+    try:
+        value = plain_number(number) * _DAYS[unit] / _DAYS["y"]
+    except (ValueError, KeyError):
+        value = float("nan")
+    if not 0.0 <= value <= 1.0:
+        problem = "it must be a time of at most a year with its unit, such as 90d, 8w, 6m or 1y"
+        raise InputError(problem, key=parameter, value=text)
+    return value
 
 
 @cli.app.command("export-reader")

@@ -60,7 +60,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         _state_table(prediction.states),
         "",
         *_as_drawn(prediction),
-        *_filled(prediction.filled),
+        *(_filled(prediction.filled) if prediction.filled else ()),
         *_off_axis(prediction.states),
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
@@ -147,9 +147,7 @@ def _as_drawn(prediction: PredictionRecord) -> list[str]:
 
 
 def _filled(states: Sequence[StateRecord]) -> list[str]:
-    """Lines on the states that are given by their filling; empty without any."""
-    if not states:
-        return []
+    """Lines on the states of a prediction that are given by their filling."""
     rows = []
     for state in states:
         held = state.held

@@ -5,8 +5,14 @@ from typing import Annotated
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json
-from pneutouch.cli.complete import document_kinds as known
 from pneutouch.cli.terminal import echo, report_next, table_text
+
+
+def known(incomplete: str) -> list[str]:
+    """Completions of the name of a kind of document."""
+    from pneutouch.schemas import document_kinds as known
+
+    return [name for name in known() if name.startswith(incomplete)]
 
 
 @app.command()

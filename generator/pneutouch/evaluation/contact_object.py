@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
@@ -34,9 +33,6 @@ _STEEPEST = math.radians(60.0)
 
 _POINTS = 2001
 """Number of points of the unloaded dome among which first touch is sought."""
-
-_DRAWN = 1.5
-"""Radius to which an object is drawn, over that of the dome."""
 
 
 def rigid_base(assembly: Assembly) -> RigidBase | None:
@@ -113,7 +109,7 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     _check_cells(scene, sensor)
     if sensor.protocol.offset:
         return
-    _, at = _at_rest(body, sensor)
+    _, at = at_rest(body, sensor)
     if not body.span[0] <= at <= body.span[1]:
         raise _edge_first(scene)
 
@@ -146,20 +142,7 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
         )
 
 
-def object_section(sensor: Sensor) -> Array | None:
-    """Section (n, 2) of the object in the plane of symmetry, x and z in mm, at first contact with the unloaded dome;
-    a row of NaN lies between its halves. None for a plate."""
-    body = sensor.protocol.body
-    if body is None:
-        return None
-    reach = _DRAWN * sensor.dome.shape.outer_radius
-    half = body.at(_at_rest(body, sensor)[0]).outline(reach)
-    section = np.concatenate([half * [-1.0, 1.0], [[np.nan, np.nan]], half])
-    section[:, 0] += sensor.protocol.offset
-    return np.asarray(section)
-
-
-def _at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
+def at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
     """Height of the object at first contact with the unloaded dome, and distance of that contact from the object's
     axis, mm."""
     # An object off the axis touches first on its side of the plane of symmetry.

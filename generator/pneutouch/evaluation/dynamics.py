@@ -25,9 +25,8 @@ GAUGE_RATE = "sampling of the gauge"
 _DIGITS = 6
 
 UNKNOWN_END = 150.0
-"""Greatest gas volume, mm3, taken for the inside of a gauge whose maker does not state it: dead-ended tubes of 1.37 mm
-bore and 0.2 to 2 m resonate 6 to 25 % below a line with the gauge's stated 4.7 mm3, which 150 mm3 explain for the most
-part (curves read off a figure)."""
+"""Greatest gas volume, mm3, taken for a gauge whose maker states none: dead-ended tubes of 1.37 mm bore and 0.2 to 2 m
+resonate 6 to 25 % below a line with a stated 4.7 mm3, mostly explained by 150 mm3 (curves read off a figure)."""
 
 EXCESS_GAIN, LONG = (1.5, 1.06), 1000.0
 """Greatest computed over measured gain of these tubes at the resonance: shorter than 1000 mm, and from there on."""
@@ -170,14 +169,8 @@ BASIS = (
 )
 
 
-def _least_gain(state: DynamicState) -> float:
-    """Gain at the resonance less what computed gains of measured tubes exceed theirs by."""
-    short, long = EXCESS_GAIN
-    return (state.band.resonance_gain or 0.0) / (long if state.dynamics.line.length >= LONG else short)
-
-
 def _state_record(state: DynamicState, rate_Hz: float | None) -> DynamicRecord:
-    band, step = state.band, state.step
+    band, step, excess = state.band, state.step, EXCESS_GAIN[state.dynamics.line.length >= LONG]
     usable_Hz, limited = state.usable(rate_Hz)
     return DynamicRecord(
         driving_pressure_kPa=state.driving_pressure / KPA,
@@ -185,7 +178,9 @@ def _state_record(state: DynamicState, rate_Hz: float | None) -> DynamicRecord:
         first_resonance_Hz=band.resonance,
         resonance_gain=band.resonance_gain,
         first_resonance_low_Hz=None if state.lowest is None else state.lowest[0],
-        resonance_gain_low=None if state.lowest is None else min(state.lowest[1], _least_gain(state)),
+        resonance_gain_low=None
+        if state.lowest is None
+        else min(state.lowest[1], (band.resonance_gain or 0.0) / excess),
         bandwidth_3_dB_Hz=usable_Hz,
         bandwidth_limited_by=limited,
         within_5_percent_Hz=band.within_tolerance,

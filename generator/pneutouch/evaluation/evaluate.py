@@ -21,7 +21,6 @@ from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Filling
-from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA, ML
@@ -322,6 +321,8 @@ def _material_error(scene: ResolvedDesign, error: InputError) -> InputError:
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
     """The sensor after a year, and the assumption on it. Raises InputError if its hardness is not known then."""
+    from pneutouch.mechanics.viscous.describe import AGED, ageing_ratio
+
     material = scene.membrane_material
     remaining = 1.0 if scene.calibration is None else scene.calibration.remaining_year
     try:

@@ -15,7 +15,6 @@ from pneutouch.evaluation.relaxation import viscous
 from pneutouch.evaluation.uncertainty import uncertainties
 from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.mechanics.response import tangent_stiffness
-from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.results.behaviour import Aged, CalibratedBy
 from pneutouch.results.prediction import (
     ByMixingCurve,
@@ -126,14 +125,14 @@ def by_model(prediction: SensorPrediction, *, curves: bool = True) -> Prediction
         states=tuple(_state(state, curves=curves) for state in prediction.states),
         assumptions=prediction.assumptions,
         filled=tuple(
-            replace(_state(state, curves=curves), uncertainty=UncertaintyRecord(unknown=_OF_FILLED))
+            replace(
+                _state(state, curves=curves),
+                uncertainty=UncertaintyRecord(unknown="the budget is of driving pressures"),
+            )
             for state in prediction.filled
         ),
     )
     return rounded(record, MODEL_DIGITS, NOTHING) if curves else record
-
-
-_OF_FILLED = "the budget is of states at a driving pressure"
 
 
 def _state(state: SensorState, *, curves: bool) -> StateRecord:
@@ -278,6 +277,8 @@ def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:
 
 
 def _aged(evaluation: Evaluation) -> Aged:
+    from pneutouch.mechanics.viscous.describe import AGED, ageing_ratio
+
     calibration = evaluation.scene.calibration
     remaining = 1.0 if calibration is None else calibration.remaining_year
     return Aged(rounded(ageing_ratio(evaluation.scene.membrane_material) ** remaining, _DIGITS), AGED)

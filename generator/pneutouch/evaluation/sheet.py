@@ -11,7 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.charts import air, resin_curves, tradeoff, tuning
-from pneutouch.evaluation.contact_object import object_section
+from pneutouch.evaluation.contact_object import at_rest
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
@@ -21,7 +21,7 @@ from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.models.choice import stated_error
-from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown
+from pneutouch.mechanics.viscous.describe import ageing_ratio, ageing_unknown
 from pneutouch.parts.mould import silicone_batch
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -157,3 +157,20 @@ def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor
         if np.isfinite(shift).all():
             changes = tuple(zip(ends, shift.tolist(), strict=True))
     return AgeingData(ageing_ratio(material), changes)
+
+
+_DRAWN = 1.5
+"""Radius to which an object is drawn, over that of the dome."""
+
+
+def object_section(sensor: Sensor) -> Array | None:
+    """Section (n, 2) of the object in the plane of symmetry, x and z in mm, at first contact with the unloaded dome;
+    a row of NaN lies between its halves. None for a plate."""
+    body = sensor.protocol.body
+    if body is None:
+        return None
+    reach = _DRAWN * sensor.dome.shape.outer_radius
+    half = body.at(at_rest(body, sensor)[0]).outline(reach)
+    section = np.concatenate([half * [-1.0, 1.0], [[np.nan, np.nan]], half])
+    section[:, 0] += sensor.protocol.offset
+    return np.asarray(section)

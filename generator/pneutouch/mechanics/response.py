@@ -165,21 +165,3 @@ def tangent_stiffness(indentation: Array, force: Array) -> Array:
     """Slope dF/d(delta) of force (N) over indentation (mm) at every point (n,), N/mm, by second-order differences."""
     slope: Array = np.gradient(force, indentation, edge_order=2 if len(force) > 2 else 1)
     return slope
-
-
-def hysteresis(force_up: Array, rise_up: Array, force_down: Array, rise_down: Array) -> tuple[float, float]:
-    """Hysteresis between a loading and an unloading branch by its two usual definitions, as fractions.
-
-    First the greatest difference of the pressure rises at equal force over the range of the loading branch's rise; then
-    the area of the loop over the area under the loading branch. The paper gives hysteresis without a formula.
-    """
-    up, down = np.argsort(force_up), np.argsort(force_down)
-    low = max(force_up.min(), force_down.min())
-    high = min(force_up.max(), force_down.max())
-    grid = np.unique(np.concatenate([force_up, force_down]))
-    grid = grid[(grid >= low) & (grid <= high)]
-    loading = np.interp(grid, force_up[up], rise_up[up])
-    unloading = np.interp(grid, force_down[down], rise_down[down])
-    gap = np.abs(unloading - loading)
-    width, area = float(gap.max() / np.ptp(rise_up)), float(np.trapezoid(gap, grid))
-    return width, area / float(np.trapezoid(loading, grid))

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.response import hysteresis
 from pneutouch.mechanics.solid.continuation import PlateState, descend
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.viscous.runs import hysteresis
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import logarithmic_change, material_sensor
-from pneutouch.mechanics.viscous.describe import ageing_shift
-from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown
+from pneutouch.mechanics.viscous.describe import ageing_ratio, ageing_shift, ageing_unknown
 from pneutouch.spec.material import HyperelasticLaw
 from pneutouch.units import KPA
 from tests.conftest import ROOT

@@ -9,8 +9,14 @@ from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED, loop_by_solid, relaxation_by_solid
-from pneutouch.mechanics.viscous.prony import ageing_ratio, prony_series
+from pneutouch.mechanics.viscous.describe import (
+    LOOP_SPEEDS,
+    RAMP_SPEED,
+    ageing_ratio,
+    loop_by_solid,
+    relaxation_by_solid,
+)
+from pneutouch.mechanics.viscous.prony import prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA

@@ -20,8 +20,9 @@ from pneutouch.bench.simulate.rig import (
 )
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
-from pneutouch.mechanics.response import Figures, figures, hysteresis, lines
+from pneutouch.mechanics.response import Figures, figures, lines
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.viscous.runs import hysteresis
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.campaign import RunKind
 from pneutouch.units import KPA

@@ -21,7 +21,6 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.table import Atlas, shipped
-from pneutouch.mechanics.response import hysteresis
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.prony import Prony
 
@@ -166,7 +165,7 @@ class LoopRun:
     ended: str | None = None
 
     def hysteresis(self) -> tuple[float, float] | None:
-        """Hysteresis by both usual measures, see `response.hysteresis`; None without a retraction."""
+        """Hysteresis by both usual measures, see `hysteresis`; None without a retraction."""
         if self.force_out.size < 2:
             return None
         return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)
@@ -299,3 +298,21 @@ def _sound(press: AtlasPress, path: ViscousPath, i: int) -> tuple[int, str | Non
 
 def _by_state(runs: list[_Run], series: int) -> list[list[_Run]]:
     return [runs[k : k + series] for k in range(0, len(runs), series)]
+
+
+def hysteresis(force_up: Array, rise_up: Array, force_down: Array, rise_down: Array) -> tuple[float, float]:
+    """Hysteresis between a loading and an unloading branch by its two usual definitions, as fractions.
+
+    First the greatest difference of the pressure rises at equal force over the range of the loading branch's rise; then
+    the area of the loop over the area under the loading branch. The paper gives hysteresis without a formula.
+    """
+    up, down = np.argsort(force_up), np.argsort(force_down)
+    low = max(force_up.min(), force_down.min())
+    high = min(force_up.max(), force_down.max())
+    grid = np.unique(np.concatenate([force_up, force_down]))
+    grid = grid[(grid >= low) & (grid <= high)]
+    loading = np.interp(grid, force_up[up], rise_up[up])
+    unloading = np.interp(grid, force_down[down], rise_down[down])
+    gap = np.abs(unloading - loading)
+    width, area = float(gap.max() / np.ptp(rise_up)), float(np.trapezoid(gap, grid))
+    return width, area / float(np.trapezoid(loading, grid))
