@@ -99,7 +99,7 @@ class GasCircuit:
     gauge_limit: float
 
     def injected(self, pressure: Any, volume: Any, at_rest: float) -> Any:
-        """Gas that fills a vented cavity of volume ``at_rest`` to a pressure and a volume, as mm3 at ambient pressure."""
+        """Gas that fills a vented cavity of volume ``at_rest`` to a pressure and volume, mm3 at ambient pressure."""
         absolute = pressure + self.ambient_pressure
         return absolute * (volume + self.dead_volume) / self.ambient_pressure - at_rest - self.dead_volume
 
