@@ -172,3 +172,12 @@ def _turned_volume(loop):
     r, z = loop[::2], loop[1::2]
     pairs = zip(r, z, [*r[1:], r[0]], [*z[1:], z[0]], strict=True)
     return abs(sum(3.141592653589793 / 3 * (a * a + a * c + c * c) * (d - b) for a, b, c, d in pairs))
+
+
+def test_a_vacuum_is_left_to_the_solid(client, command):
+    sucked = {"pneumatics.driving_pressures_kPa": "[-5, 0]"}
+    quick = asked(client, "/api/quick", sucked).json()
+    assert "below ambient" in quick["outside"] and quick["prediction"] is None
+    answer = asked(client, "/api/solved", sucked).json()
+    expected = printed(command, "predict", "paper-dome", "--set", "pneumatics.driving_pressures_kPa=[-5,0]")
+    assert answer["prediction"]["states"] == expected["states"]

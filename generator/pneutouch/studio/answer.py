@@ -110,7 +110,9 @@ class Answers:
         source, version = question.read(self._bases, self._library)
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
-        drawing, why = _drawn_design(assembly), outside("atlas", sensor_of(assembly))
+        sucked = scene.design.pneumatics.driving_pressures_kPa[0] < 0.0
+        why = "a driving pressure is below ambient" if sucked else outside("atlas", sensor_of(assembly))
+        drawing = _drawn_design(assembly)
         answer = partial(_named(QuickAnswer, source), version=version, drawing=drawing)
         if why is not None:
             return answer(outside=why, prediction=None, curves=None)
