@@ -80,10 +80,10 @@ def _banded(look: PlotLine, x: Array, y: Array, ends: BandEnds | None) -> PlotLi
 def sensitivities(lines: Sequence[PlotLine], notes: Sequence[Note] = (), caption: str = "") -> Panel:
     """Panel of sensitivity (kPa/N) over driving pressure (kPa), with limits that hold all lines and bands."""
     heights = [value for one in lines for values in (one.y, one.high) if values is not None for value in values]
-    right = max((float(value) for one in lines for value in one.x), default=0.0)
+    at = [0.0, *(float(value) for one in lines for value in one.x)]
     across = "\n".join(["driving pressure  (kPa)", *([caption] if caption else [])])
     # A design that is not driven, off the axis, where no resin has a curve: the only point is at 0 kPa.
-    limits = (0, 1.02 * right or 1.0), (0, 1.1 * max(map(float, heights), default=1.0))
+    limits = (1.02 * min(at), 1.02 * max(at) or 1.0), (0, 1.1 * max(map(float, heights), default=1.0))
     return Panel(across, "sensitivity  (kPa/N)", tuple(lines), tuple(notes), xlim=limits[0], ylim=limits[1])
 
 

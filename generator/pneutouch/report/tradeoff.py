@@ -12,6 +12,8 @@ from pneutouch.report.style import ACCENT, FAINT, INK, LINES
 
 _ALIKE = 0.07
 """Relative distance from the end of the gauge's range within which a front is one with it."""
+_EVENED = 61
+"""Number of a front's points, a tenth of them, of whose distances the median counts."""
 
 
 def tradeoff_panel(tradeoff: TradeOff) -> Panel:
@@ -60,7 +62,9 @@ def _reached(tradeoff: TradeOff, short: list[Array]) -> Panel:
     for k, (front, missing) in enumerate((tradeoff.known[each], short[each]) for each in order):
         s, row = front.sensitivity, np.full(front.sensitivity.size, float(k))
         tone = ACCENT if tradeoff.spots and titles[k] == tradeoff.spots[0].resin else INK
-        whole = np.where(missing < _ALIKE, row, np.nan)
+        # A front that runs along the limit of `_ALIKE` would change its width from point to point.
+        near = np.lib.stride_tricks.sliding_window_view(np.pad(missing, _EVENED // 2, mode="edge"), _EVENED)
+        whole = np.where(np.median(near, axis=-1) < _ALIKE, row, np.nan)
         lines.append(PlotLine(s, whole, tone=tone, width=3.5))
         lines.append(PlotLine(s, row, tone=tone, width=0.7))
         notes += [Note(f"{front.force[e]:.3g} N", (float(s[e]), k), (-1.0 - 2.0 * e, 0.0)) for e in (0, -1)]
