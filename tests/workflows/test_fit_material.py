@@ -52,6 +52,27 @@ def test_a_tensile_test_becomes_a_material(command, tmp_path):
     assert "was not written by pneutouch fit-material" in refused.stderr
 
 
+def test_tension_and_equibiaxial_data_give_a_law_of_two_invariants(command, tmp_path):
+    for name, ratio, most in (("pull", -0.5, 2.4), ("both", 1.0, 1.6)):
+        stretch = np.linspace(1.02, most, 30)
+        stress = tension("mooney-rivlin", (0.06, 0.02), stretch, ratio)
+        rows = [f"{a:.6f},{b:.8f}" for a, b in zip(stretch, stress, strict=True)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(["stretch,engineering stress (MPa)", *rows]) + "\n")
+    line = ("fit-material", "pull.csv", "both.csv", "--name", "Ours", "--like", "DragonSkin20")
+    done = command(*line, "--kinds", "tension,equibiaxial", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    content = json.loads(done.stdout)
+    hold("fit", content)
+    assert [one["kind"] for one in content["specimens"]] == ["tension", "equibiaxial"]
+    law = tomllib.loads((tmp_path / "printprofiles/materials/Ours.toml").read_text())["law"]
+    assert law["name"] == "mooney-rivlin"
+    assert law["constants"] == pytest.approx([0.06, 0.02], rel=0.01)
+    assert law["kinds"] == ["tension", "equibiaxial"]
+    wrong = command(*line, "--kinds", "tension", cwd=tmp_path)
+    assert wrong.returncode == 2
+    assert "--kinds" in wrong.stderr
+
+
 def test_three_specimens_give_low_high_and_spread(command, tmp_path):
     for k, factor in enumerate((0.9, 1.0, 1.1)):
         write(tmp_path / f"{k}.csv", factor)

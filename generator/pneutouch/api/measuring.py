@@ -237,15 +237,17 @@ def fit_material(
     gauge_length_mm: float | None = None,
     width_mm: float | None = None,
     thickness_mm: float | None = None,
+    opening_mm: float | None = None,
+    kinds: Sequence[str] = (),
     puck_mm: tuple[float, float] | None = None,
     bonded: bool = False,
     stretch_to: float | None = None,
     slack: float | None = None,
     lab: str | None = None,
 ) -> Result:
-    """Fit a hyperelastic law to a tensile test (one file a specimen) or, with ``puck_mm``, to a puck test.
+    """Fit a hyperelastic law to tests (one file a specimen) or, with ``puck_mm``, to a puck test.
 
-    ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
+    ``kinds`` are tension, planar or equibiaxial, one for each file; ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
     into the user's folder and plot and figures into the folder given. Raises InputError for data that give no law.
     """
     from pneutouch.workflows.fit_material import fit_material as run

@@ -1,4 +1,4 @@
-"""``pneutouch fit-material``: a tensile or puck test of a laboratory made into a material file."""
+"""``pneutouch fit-material``: tests of a laboratory made into a material file."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -18,14 +18,14 @@ def fit_material(
     data: Annotated[
         list[Path],
         typer.Argument(
-            metavar="DATA...", help="CSV of a tensile test, one file a specimen; with --puck of a puck test."
+            metavar="DATA...", help="CSV of a test in tension, planar or equibiaxial, or of a puck (--puck)."
         ),
     ],
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
     **options: Any,
 ) -> None:
-    """Fit a hyperelastic law to a tensile or puck test and write it as a material of your own."""
+    """Fit a hyperelastic law to your own tests and write it as a material of your own."""
     from pneutouch.workflows.fit_material import fit_material as fit
     from pneutouch.workflows.fit_material import fit_report, write_material
 
@@ -70,7 +70,7 @@ def fit_text(report: MaterialFit) -> str:
     ]
     head = ["", "law", "misfit", "constants (MPa; Ogden: mu, alpha), k = 2", ""]
     specimens = [
-        f"{one.data}: {one.points} points, slack {one.slack_percent:.2g} %, shear modulus "
+        f"{one.data}: {one.kind}, {one.points} points, slack {one.slack_percent:.2g} %, shear modulus "
         f"{one.shear_modulus_MPa:.4g} MPa"
         for one in report.specimens
     ]

@@ -32,10 +32,12 @@ class TriedLaw(LawRecord):
 
 @dataclass(frozen=True, slots=True)
 class PulledSpecimen:
-    """A specimen that was measured in tension."""
+    """A specimen that was measured."""
 
     data: str
     """Name of the data file."""
+    kind: str
+    """Kind of test: tension, planar or equibiaxial."""
     points: int
     """Number of points."""
     slack_percent: float
@@ -53,9 +55,9 @@ class MaterialFit:
     file: str
     """Path of the material file that was written."""
     test: Literal["tension", "puck"]
-    """Kind of test: a specimen in tension, or a puck between plates."""
+    """Kind of test: specimens pulled, in one or two directions, or a puck between plates."""
     largest_stretch: float
-    """Greatest stretch of the data that were fitted."""
+    """Greatest stretch of tension up to which the data were fitted; other tests to the same first invariant."""
     law: LawRecord
     """Law that was chosen."""
     shear_modulus_small_strain_MPa: float

@@ -238,6 +238,12 @@ class FitOptions(Options):
     gauge_length_mm: float | None = _length(_SPECIMEN)
     width_mm: float | None = _length(_SPECIMEN)
     thickness_mm: float | None = _length(_SPECIMEN)
+    opening_mm: float | None = option(
+        None, "Diameter in which an inflated disc is free.", unit="mm", low=0.05, high=1000, metavar="MM"
+    )
+    kinds: list[Literal["tension", "planar", "equibiaxial"]] = option(
+        [], "Kind of each file: tension, planar, equibiaxial.", metavar="KIND,KIND", shown="as its columns say"
+    )
     puck_mm: Annotated[list[float], Field(min_length=2, max_length=2), _PUCK] | None = option(
         None,
         "A puck pressed between plates: diameter and thickness in mm, such as 20x6.",

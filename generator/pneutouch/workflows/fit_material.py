@@ -1,17 +1,18 @@
-"""Work of ``fit-material``: the law of a material from a laboratory's tensile or puck test, and its material file."""
+"""Work of ``fit-material``: the law of a material from a laboratory's own tests, and its material file."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, PuckFit, PuckSize, choose_law, fit_puck
-from pneutouch.bench.tensile.law_fit import LawFit, difference
+from pneutouch.bench.tensile.law_fit import LawFit, TensionCurve, difference
 from pneutouch.bench.tensile.read import SpecimenSize, read_tension
 from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.printers import makers
@@ -24,7 +25,7 @@ from pneutouch.report.fit_charts import LawCurve, law_chart
 from pneutouch.results.fit import LawRecord, MaterialFit, PulledSpecimen, TriedLaw
 from pneutouch.results.record import plain
 from pneutouch.spec.files import check_of, read_bytes, whole_head
-from pneutouch.spec.material import HyperelasticLaw, Material, density_problem
+from pneutouch.spec.material import TENSION_ALONE_PERCENT, HyperelasticLaw, Material, density_problem
 from pneutouch.spec.options import FitOptions
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
@@ -56,7 +57,8 @@ def fit_report(fitted: FittedMaterial) -> MaterialFit:
         shear_modulus_MPa=fitted.neo_hookean.constants[0],
         shear_modulus_uncertainty_MPa=fitted.neo_hookean.errors[0],
         specimens=tuple(
-            PulledSpecimen(curve.file, int(curve.stretch.size), 100 * curve.slack, modulus) for curve, modulus in pulled
+            PulledSpecimen(curve.file, curve.kind, int(curve.stretch.size), 100 * curve.slack, modulus)
+            for curve, modulus in pulled
         ),
         fits=tuple(TriedLaw(*_figures(fit), refused.get(k)) for k, fit in enumerate(fits)),
         profile=_profile(fitted),
@@ -84,6 +86,12 @@ def _notes(fitted: FittedMaterial, small: float) -> list[str]:
         notes.append(
             f"no law that the data determine is within {100 * MISFIT:g} % of them; {fitted.law.form.label} is off by "
             f"up to {100 * fitted.law.misfit:.2g} %"
+        )
+    if fitted.choice is not None and fitted.choice.kinds == ("tension",):
+        low, high = TENSION_ALONE_PERCENT
+        notes.append(
+            f"fitted to tension alone: its stress in two directions is likely {low:g} to {high:g} % too low, which the "
+            "intervals of limit pressure and height hold; measure an equibiaxial or an inflated specimen too"
         )
     notes += [*_uncast(fitted), *_hardness(fitted, small)]
     notes.append("the intervals hold the scatter of these points alone, not that of other batches, rates or ages")
@@ -135,12 +143,16 @@ def _chart(fitted: FittedMaterial) -> str:
         curves = [LawCurve(fitted.law.form.label, stretch, fitted.law.stress(stretch), fitted.puck.stretch, off)]
         return law_chart([(fitted.puck.stretch, fitted.puck.stress)], curves, fitted.largest)
     assert fitted.choice is not None
-    curves = []
+    curves, kinds = [], fitted.choice.kinds
     for law in laws:
         off_at, off, _ = (
             np.concatenate(parts) for parts in zip(*(difference(law, c) for c in fitted.choice.curves), strict=True)
         )
-        curves.append(LawCurve(law.form.label, stretch, law.stress(stretch), off_at, off))
+        curves.append(LawCurve(law.form.label, stretch, law.stress(stretch, kinds[0]), off_at, off))
+    for kind in kinds[1:]:
+        to = np.linspace(1.0, max(curve.stretch[-1] for curve in fitted.choice.curves if curve.kind == kind), _GRID)
+        none = np.empty(0)
+        curves.append(LawCurve(f"{fitted.law.form.label}, {kind}", to, fitted.law.stress(to, kind), none, none))
     points = [(curve.stretch, curve.stress) for curve in fitted.choice.curves]
     return law_chart(points, curves, fitted.largest)
 
@@ -166,12 +178,19 @@ def fit_material(data: Sequence[Path], options: FitOptions, library: Library | N
         law = LawFit(NEO_HOOKEAN, (puck.modulus,), (puck.error,), puck.misfit, puck.misfit)
         neo, largest = law, puck.largest
     else:
-        lengths = SpecimenSize(options.gauge_length_mm, options.width_mm, options.thickness_mm)
-        curves = [read_tension(file, lengths) for file in data]
+        curves = _curves(data, options)
         choice = choose_law(curves, options.stretch_to, options.slack)
         law, neo, largest = choice.law, choice.neo_hookean, choice.largest
     fitted = FittedMaterial(tuple(data), options, law, neo, largest, choice, puck, path, "")
     return replace(fitted, text=material_file(fitted, library))
+
+
+def _curves(data: Sequence[Path], options: FitOptions) -> list[TensionCurve]:
+    """Curves of the files. Raises InputError unless ``kinds`` is empty or has one entry for each."""
+    size = SpecimenSize(options.gauge_length_mm, options.width_mm, options.thickness_mm, options.opening_mm)
+    if options.kinds and len(options.kinds) != len(data):
+        raise InputError("give one for each file, in their order", key="kinds", value=",".join(options.kinds))
+    return [read_tension(file, size, kind) for file, kind in zip_longest(data, options.kinds)]
 
 
 def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Path:
@@ -182,6 +201,7 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
         "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.data},
         "stretch_to": fitted.options.stretch_to,
         "slack": fitted.options.slack,
+        "kinds": fitted.options.kinds,
         "material": fitted.text,
     }
     made = {"fit.json": json_bytes(versioned("fit", plain(report))), "fit.svg": _chart(fitted).encode()}
@@ -302,8 +322,10 @@ def _modulus(fitted: FittedMaterial) -> Quantity:
     low = high = spread = None
     if len(each) > 1:
         low, high = _four(min(*each, value)), _four(max(*each, value))
-        spread = _four(float(np.std(each, ddof=1)))
-        how += f"; low, high and spread: of {len(each)} specimens"
+        assert fitted.choice is not None
+        # Kinds of test differ by more than the scatter of specimens.
+        spread = _four(float(np.std(each, ddof=1))) if len(fitted.choice.kinds) == 1 else None
+        how += f"; low, high{' and spread' if spread else ''}: of {len(each)} specimens"
     return Quantity(value=value, low=low, high=high, spread=spread, source=f"{_test(fitted)}: {how}{_by(fitted)}")
 
 
@@ -311,8 +333,10 @@ def _law(fitted: FittedMaterial) -> HyperelasticLaw:
     law = fitted.law
     slack = "" if fitted.choice is None else f", {_slack(fitted)} of slack taken off"
     # Not checked here: the whole file is, with its path in the message.
+    kinds = ["puck"] if fitted.choice is None else [*fitted.choice.kinds]
     return HyperelasticLaw.model_construct(
         name=law.form.name,
+        kinds=[] if kinds == ["tension"] else kinds,
         constants=[_four(constant) for constant in law.constants],
         largest_stretch=_four(fitted.largest),
         misfit_percent=float(f"{100 * law.misfit:.3g}"),
@@ -336,4 +360,5 @@ def _test(fitted: FittedMaterial) -> str:
     assert fitted.choice is not None
     facts = fitted.choice.curves[0].facts
     stated = [f"{key}: {facts[key]}" for key in ("Speed (mm/min)", "Strain Measurement", "Standard") if key in facts]
-    return f"uniaxial tension, {names}" + (f" ({', '.join(stated)})" if stated else "")
+    kinds = " and ".join("uniaxial tension" if kind == "tension" else kind for kind in fitted.choice.kinds)
+    return f"{kinds}, {names}" + (f" ({', '.join(stated)})" if stated else "")

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.tensile.choose import FORMS, MISFIT, choose_law, instability, reached_stretch
-from pneutouch.bench.tensile.law_fit import LawForm, TensionCurve, fit_law, tension
+from pneutouch.bench.tensile.law_fit import RATIOS, LawForm, TensionCurve, fit_law, tension
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import hyperelastic
 from pneutouch.mechanics.laws.hyperelastic import first_invariant, same_invariant
@@ -102,6 +104,68 @@ def test_data_that_no_law_can_follow_are_refused():
 @given(st.floats(1.0, 8.0))
 def test_the_tension_of_an_invariant(stretch):
     assert float(same_invariant(first_invariant(stretch))) == pytest.approx(stretch, rel=1e-6)
+
+
+def kind_curve(kind, constants=(0.06, 0.02), name="mooney-rivlin", most=2.2, count=40):
+    stretch = np.linspace(1.02, most, count)
+    return TensionCurve(stretch, tension(name, constants, stretch, RATIOS[kind]), kind=kind)
+
+
+@pytest.mark.parametrize("kind", RATIOS)
+@pytest.mark.parametrize("name", LAWS)
+def test_the_stress_of_every_kind_is_the_slope_of_the_energy(name, kind):
+    law, step, ratio = hyperelastic(name, LAWS[name], 0.49), 1e-5, RATIOS[kind]
+
+    def energy(first, second):
+        return law.energy(Strain(first**2 + second**2, first * second, 1 / (first * second))).data[VALUE]
+
+    first, second = STRETCH, STRETCH**ratio
+    slope = (energy(first + step, second) - energy(first - step, second)) / (2 * step)
+    assert tension(name, LAWS[name], STRETCH, ratio) == pytest.approx(slope, rel=1e-5)
+
+
+@pytest.mark.parametrize("second", ["equibiaxial", "planar"])
+def test_two_kinds_of_test_determine_the_part_of_the_second_invariant(second):
+    # Few points of one kind must count as much as many of the other.
+    choice = choose_law([kind_curve("tension", count=200), kind_curve(second, most=1.6, count=12)], slack=0.0)
+    assert choice.law.form.name == "mooney-rivlin"
+    assert choice.law.constants == pytest.approx((0.06, 0.02), rel=0.01)
+    assert choice.kinds == ("tension", second)
+
+
+def test_tension_alone_predicts_too_little_equibiaxial_stress():
+    choice = choose_law([kind_curve("tension")], slack=0.0)
+    other = kind_curve("equibiaxial", most=1.6)
+    far = other.stretch > 1.2
+    assert (choice.law.stress(other.stretch, "equibiaxial")[far] < 0.9 * other.stress[far]).all()
+
+
+def test_a_law_of_the_first_invariant_is_taken_where_the_second_has_no_part():
+    kinds = [kind_curve(kind, (0.08,), "neo-hookean", most=1.5) for kind in ("tension", "equibiaxial")]
+    assert choose_law(kinds, slack=0.0).law.form == LawForm("neo-hookean", 1)
+
+
+def test_a_negative_exponent_of_two_kinds_comes_back():
+    kinds = [kind_curve(kind, (0.1, 3.5, 0.03, -2.5), "ogden", most=1.8) for kind in RATIOS]
+    choice = choose_law(kinds, slack=0.0)
+    assert choice.good
+    assert choice.law.form.name == "ogden"
+
+
+@pytest.mark.parametrize("count", [8, 9])
+def test_few_points_in_the_range_are_refused_with_a_range_that_works(count):
+    coarse = kind_curve("tension", most=4.5, count=count)
+    with pytest.raises(InputError) as caught:
+        choose_law([replace(coarse, file="coarse.csv")], slack=0.0)
+    assert caught.value.file == "coarse.csv"
+    further = float(str(caught.value.remedy).rpartition(" ")[2])
+    assert choose_law([coarse], further, slack=0.0).curves[0].stretch.size == 4
+
+
+def test_a_law_with_too_few_points_for_its_constants_is_refused():
+    coarse = kind_curve("tension", (0.1, 0.03, 0.004), "yeoh", most=2.0, count=4)
+    choice = choose_law([coarse], slack=0.0)
+    assert all(fit.form.parameters <= 2 or k in choice.refused for k, fit in enumerate(choice.fits))
 
 
 def test_the_range_follows_the_modulus():

@@ -41,6 +41,46 @@ def test_columns_and_units(tmp_path, header, length, load):
     assert curve.stress == pytest.approx(STRESS, rel=1e-5)
 
 
+def test_the_kind_of_test_is_read_from_the_columns_or_given(tmp_path):
+    named = write(tmp_path, "equibiaxial stretch,stress (MPa)", LAMBDA, STRESS)
+    assert read_tension(named).kind == "equibiaxial"
+    with pytest.raises(InputError) as caught:
+        read_tension(named, kind="planar")
+    assert caught.value.key == "kinds"
+    assert read_tension(write(tmp_path, "stretch,stress (MPa)", LAMBDA, STRESS), kind="planar").kind == "planar"
+    assert read_tension(write(tmp_path, "stretch,stress (MPa)", LAMBDA, STRESS)).kind == "tension"
+
+
+@pytest.mark.parametrize(("radius", "within"), [(True, 1e-6), (False, 0.05)])
+def test_an_inflated_disc_gives_the_stress_of_its_pole(tmp_path, radius, within):
+    # Neo-Hookean membrane, mu 1 MPa, opening 2 mm, 0.01 mm thick, integrated from pole to rim: stretch and height.
+    table = ((1.05, 0.2743), (1.1, 0.3828), (1.2, 0.5308), (1.4, 0.7246), (1.6, 0.8654), (1.8, 0.9808), (2.0, 1.0829))
+    stretch, height = np.array(table).T
+    curvature = (1 + height**2) / (2 * height) / np.interp(stretch, (1.05, 1.4, 1.6, 1.8, 2), PRESSED)
+    nominal = stretch - stretch**-5
+    pressure = 1e3 * 2 * 0.01 * nominal / (curvature * stretch)
+    columns = [np.concatenate([[value], values]) for value, values in ((1.02, stretch), (1e-3, pressure))]
+    bent = ("Radius (mm)", np.r_[curvature[0], curvature]) if radius else ("Height (mm)", np.r_[0.172, height])
+    curve = read_tension(
+        write(tmp_path, f"stretch,pressure (kPa),{bent[0]}", *columns, bent[1]), SpecimenSize(None, None, 0.01, 2)
+    )
+    assert curve.kind == "equibiaxial"
+    assert curve.stress[-7:] == pytest.approx(nominal, rel=within)
+
+
+PRESSED = (0.9078, 0.917, 0.9305, 0.9427, 0.9526)
+"""Radius of a cap of the pole's height over the pole's, of that membrane at its stretches."""
+
+
+def test_an_inflated_disc_without_its_size_is_refused(tmp_path):
+    path = write(tmp_path, "stretch,pressure (kPa),height (mm)", LAMBDA, STRESS, LAMBDA)
+    for size in (SpecimenSize(), SpecimenSize(None, None, 1.0)):
+        with pytest.raises(InputError, match=r"give `(thickness|opening)` in mm"):
+            read_tension(path, size)
+    with pytest.raises(InputError, match="curvature"):
+        read_tension(write(tmp_path, "stretch,pressure (kPa)", LAMBDA, STRESS), SpecimenSize(None, None, 1.0, 20))
+
+
 HEAD = (
     "PARAMETER;INFO;;;",
     "Specimen Length (mm);33;;;",

@@ -73,6 +73,20 @@ def test_a_measured_modulus_takes_the_place_of_the_published_one(library):
     assert after.standard[limit, 0] < 0.25 * before.standard[limit, 1]
 
 
+def test_a_law_of_tension_alone_widens_the_free_state_by_the_published_shortfall(library):
+    alone, printer = materials(library)["DragonSkin20"], library.load("printers", "silicone-casting")
+    law = alone.law.model_copy(update={"kinds": ["tension", "equibiaxial"]})
+    batch = batch_of(material_sensor(alone), [0.0, 0.008])
+    facts = {"near_paper": False, "errors": model_errors(alone, []), "numerical": {}}
+    one, two = (budget(batch, it, printer, **facts) for it in (alone, alone.model_copy(update={"law": law})))
+    wider = one.variances.sum(axis=0) - two.variances.sum(axis=0)
+    limit, apex = FIGURES.index("limit_pressure_kPa"), FIGURES.index("apex_height_outer_mm")
+    # The limit pressure goes with the modulus: from none to 18 % more.
+    assert wider[limit] == pytest.approx(np.log(1.18) ** 2 / 3, rel=0.05)
+    assert (wider[apex][1:] > 0).all()
+    assert np.delete(wider, [limit, apex], axis=0) == pytest.approx(0.0, abs=1e-4)
+
+
 def test_assumed_numbers_are_what_their_sentences_say(library):
     paths = [m for m in materials(library).values() if m.measured]
     rms = lambda values: np.sqrt(np.mean(np.square(values)))  # noqa: E731

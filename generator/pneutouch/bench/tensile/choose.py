@@ -17,7 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.law_fit import LawFit, LawForm, TensionCurve, fit_law, joined_points, tension_basis
+from pneutouch.bench.tensile.law_fit import (
+    RATIOS,
+    LawFit,
+    LawForm,
+    TensionCurve,
+    difference,
+    fit_law,
+    invariant,
+    joined_points,
+    tension_basis,
+)
 from pneutouch.bench.tensile.read import LEAST_POINTS, MODULI, column_pairs
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic
@@ -28,9 +38,6 @@ from pneutouch.tables.read import layout_of, whole
 _STATES, _STEP = 60, 1e-3
 _POISSON_RATIO = 0.49
 
-_RATIOS = {"uniaxial tension": -0.5, "pure shear": 0.0, "equibiaxial tension": 1.0}
-"""Logarithm of the second principal stretch over that of the first."""
-
 
 def instability(name: str, constants: tuple[float, ...], largest: float) -> str | None:
     """First state in which a law is unstable, in words; None for a stable law.
@@ -39,10 +46,9 @@ def instability(name: str, constants: tuple[float, ...], largest: float) -> str 
     InputError for constants that give no solid at all."""
     law = hyperelastic(name, constants, _POISSON_RATIO)
     most = float(first_invariant(largest))
-    for kind, ratio in _RATIOS.items():
+    for kind, ratio in zip(("uniaxial tension", "pure shear", "equibiaxial tension"), RATIOS.values(), strict=True):
         logs = np.linspace(_STEP, np.log(largest), _STATES)
-        first = sum(np.exp(2.0 * part * logs) for part in (1.0, ratio, -1.0 - ratio))
-        logs = logs[first <= most * (1.0 + 1e-9)]
+        logs = logs[invariant(np.exp(logs), ratio) <= most * (1.0 + 1e-9)]
         least = _least_stiffness(law, logs, ratio * logs)
         if (least <= 0.0).any():
             return f"{kind} at a stretch of {np.exp(logs[int(np.argmax(least <= 0.0))]):.2f}"
@@ -96,11 +102,24 @@ FORMS = (
 first: it depends only on the first invariant, so that a fit in tension also holds in two directions (Yeoh, Rubber Chem.
 Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975, p. 215)."""
 
+BIAXIAL_FORMS = (LawForm("mooney-rivlin", 2), NEO_HOOKEAN, LawForm("ogden", 4), LawForm("yeoh", 2), LawForm("yeoh", 3))
+"""The order where planar or equibiaxial tests are among the data: they determine a constant of the second invariant,
+on which Mooney-Rivlin's law depends, and Ogden's by its negative exponents."""
+
+EXTRA_POINTS = 2
+"""Least number of points beyond the constants of a law: with none every law fits exactly, whatever the material."""
+
+LEAST_FITTED = 2 + EXTRA_POINTS
+"""Least number of points in the range: with fewer only the neo-Hookean law is left, compared with no other."""
+
 LAST = LawForm("ogden", 6)
 """Law tried after `FORMS`, if none is good: few curves determine all of its six constants."""
 
 _NEAR_BEST = 0.01
 """Distance from the least misfit within which the law with the fewest constants is taken if none is good."""
+
+_WORSE = 2.0
+"""Factor by which a law may miss points left out of its fit more than those in it: our choice."""
 
 _MOST_SLACK, _SLACK_STEPS = 0.08, 81
 _LEAST_SLACK = 0.002
@@ -115,7 +134,8 @@ class LawChoice:
         curves: Fitted curves: without slack, up to the largest stretch.
         whole: The same curves with the points beyond the largest stretch.
         largest: Greatest stretch of the fit.
-        fits: Fits in the order of `FORMS` and `LAST`; Ogden's laws are tried only while no other is good.
+        fits: Fits in the order of `FORMS`, or `BIAXIAL_FORMS`, and `LAST`; of tension alone, Ogden's laws are tried
+            only while no other is good.
         refused: Reasons why a law cannot be used, by its index in ``fits``.
         chosen: Index in ``fits`` of the law taken.
         each: Neo-Hookean shear modulus fitted to each single curve, MPa.
@@ -137,7 +157,12 @@ class LawChoice:
     @property
     def neo_hookean(self) -> LawFit:
         """The neo-Hookean law over the same range."""
-        return self.fits[0]
+        return next(fit for fit in self.fits if fit.form == NEO_HOOKEAN)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of test among the curves, in the order of `RATIOS`."""
+        return tuple(kind for kind in RATIOS if kind in {curve.kind for curve in self.curves})
 
 
 def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, slack: float | None = None) -> LawChoice:
@@ -150,13 +175,15 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
         slack: Strain to take off every curve; None: found for each.
 
     Raises:
-        InputError: No law is stable over the range, or a curve has too few points in it."""
+        InputError: No law is stable over the range, or too few points are in it."""
     first = reached_stretch(_modulus(curves)) if largest is None else largest
     whole = tuple(curve.without_slack(_slack(curve, first) if slack is None else slack) for curve in curves)
     modulus = _modulus([curve.up_to(first) for curve in whole])
-    most = min(float(curve.stretch[-1]) for curve in whole)
+    most = min(float(curve.tension[-1]) for curve in whole)
     largest = min(reached_stretch(modulus) if largest is None else largest, most)
     fitted = tuple(curve.up_to(largest) for curve in whole)
+    for curve, every in zip(fitted, whole, strict=True):
+        _enough(curve, every, largest)
     fits, refused = _tried(fitted, largest)
     usable = [k for k in range(len(fits)) if k not in refused]
     if not usable:
@@ -166,19 +193,50 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
     return LawChoice(fitted, whole, largest, tuple(fits), refused, _taken(fits, usable), each)
 
 
+def _enough(curve: TensionCurve, whole: TensionCurve, largest: float) -> None:
+    """Raise InputError for a curve of fewer than `LEAST_FITTED` points in the range."""
+    count = curve.stretch.size
+    if count >= LEAST_FITTED:
+        return
+    problem = (
+        f"{count} of {whole.stretch.size} points are in the range of the fit, up to a stretch of {largest:.3g} in "
+    )
+    remedy = f"at least {LEAST_FITTED}, two more than a law of two constants has: measure at closer points"
+    if whole.stretch.size >= LEAST_FITTED:
+        further = np.ceil(100.0 * float(whole.tension[LEAST_FITTED - 1]) * (1.0 + whole.slack)) / 100.0
+        remedy += f", or give `stretch_to` {further:g}"
+    raise InputError(f"{problem}tension", file=curve.file, remedy=remedy)
+
+
 def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit], dict[int, str]]:
-    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good, and reasons against some, by index."""
+    """Fits of the laws in their order, and reasons against some, by index."""
     fits: list[LawFit] = []
     refused: dict[int, str] = {}
-    good = False
-    for form in (*FORMS, LAST):
+    biaxial, good = any(curve.kind != "tension" for curve in curves), False
+    points = sum(curve.stretch.size for curve in curves)
+    for form in (*(BIAXIAL_FORMS if biaxial else FORMS), LAST):
         if good and form.name == "ogden":
             continue
         fits.append(fit_law(form, curves))
-        if (why := _refused(fits[-1], largest)) is not None:
+        why = _refused(fits[-1], largest)
+        if points < form.parameters + EXTRA_POINTS:
+            why = f"{points} points for {form.parameters} constants; at least {form.parameters + EXTRA_POINTS}"
+        elif why is None and biaxial and (off := _held_out(form, curves)) > max(MISFIT, _WORSE * fits[-1].misfit):
+            why = f"off by {100 * off:.2g} % at points that were left out of its fit"
+        if why is not None:
             refused[len(fits) - 1] = why
         good = good or (why is None and fits[-1].misfit <= MISFIT)
     return fits, refused
+
+
+def _held_out(form: LawForm, curves: Sequence[TensionCurve]) -> float:
+    """Greatest misfit of a law at every second point, fitted to the others; both halves are left out in turn."""
+    halves = [[curve.at(slice(start, None, 2)) for curve in curves] for start in (0, 1)]
+    off = []
+    for fitted, left in (halves, halves[::-1]):
+        fit = fit_law(form, fitted)
+        off += [np.abs(means).max(initial=0.0) for means in (difference(fit, curve)[1] for curve in left)]
+    return float(max(off))
 
 
 def _taken(fits: Sequence[LawFit], usable: Sequence[int]) -> int:
@@ -212,8 +270,8 @@ def _slack(curve: TensionCurve, largest: float) -> float:
     near = curve.up_to(largest * (1.0 + _MOST_SLACK))
 
     def cost(slack: float) -> float:
-        stretch, stress, scale = joined_points([replace(near, stretch=near.stretch / (1.0 + slack))])
-        basis = tension_basis("yeoh", 3, np.maximum(stretch, 1.0)) / scale[:, None]
+        stretch, stress, scale, ratio = joined_points([replace(near, stretch=near.stretch / (1.0 + slack))])
+        basis = tension_basis("yeoh", 3, np.maximum(stretch, 1.0), ratio) / scale[:, None]
         constants = np.linalg.lstsq(basis, stress / scale, rcond=None)[0]
         return float(np.sum((basis @ constants - stress / scale) ** 2))
 

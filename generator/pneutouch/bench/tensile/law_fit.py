@@ -1,6 +1,7 @@
-"""Fit of a hyperelastic law to tensile curves, by least squares of the relative difference of stress.
+"""Fit of a hyperelastic law to measured curves, by least squares of the relative difference of stress.
 
-The nominal stress of an incompressible law in uniaxial tension is P = dW/dlambda (Treloar 1975, ch. 5)."""
+In the tests of `RATIOS` the stretches are l, l^r and l^(-1-r), and no stress acts along the third. The nominal stress
+of an incompressible law along the first is 2 (l - l^(-3-2r)) (dW/dI1 + l^(2r) dW/dI2) (Treloar 1975, ch. 5)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -8,8 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.mechanics.laws.hyperelastic import first_invariant
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.laws.hyperelastic import same_invariant
+
+UNIAXIAL = -0.5
+
+RATIOS = {"tension": UNIAXIAL, "planar": 0.0, "equibiaxial": 1.0}
+"""Logarithm of the second principal stretch over that of the first, by the kind of test."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +26,8 @@ class TensionCurve:
         file: File of the curve, for messages.
         notes: Changes made to the numbers when they were read.
         slack: Strain taken off the data: that before the specimen carried load.
-        facts: Entries of the file on the test, such as its machine or its speed."""
+        facts: Entries of the file on the test, such as its machine or its speed.
+        kind: Kind of test, a key of `RATIOS`."""
 
     stretch: Array
     stress: Array
@@ -28,6 +35,17 @@ class TensionCurve:
     notes: tuple[str, ...] = ()
     slack: float = 0.0
     facts: dict[str, str] = field(default_factory=dict)
+    kind: str = "tension"
+
+    @property
+    def ratio(self) -> float:
+        """Logarithm of the second principal stretch over that of the first."""
+        return RATIOS[self.kind]
+
+    @property
+    def tension(self) -> Array:
+        """Stretches (n,) of uniaxial tension with the same first invariants."""
+        return self.stretch if self.ratio == UNIAXIAL else same_invariant(invariant(self.stretch, self.ratio))
 
     def without_slack(self, slack: float) -> "TensionCurve":
         """The curve with its stretch counted from the onset of load at the strain ``slack``, without earlier points."""
@@ -36,34 +54,42 @@ class TensionCurve:
         return replace(self, stretch=stretch[kept], stress=self.stress[kept], slack=slack)
 
     def up_to(self, largest: float) -> "TensionCurve":
-        """The curve up to a stretch."""
-        kept = self.stretch <= largest * (1.0 + 1e-9)
-        return replace(self, stretch=self.stretch[kept], stress=self.stress[kept])
+        """The curve up to the first invariant of uniaxial tension at a stretch."""
+        return self.at(self.tension <= largest * (1.0 + 1e-9))
+
+    def at(self, points: Flags | slice) -> "TensionCurve":
+        """The curve of some of its points alone."""
+        return replace(self, stretch=self.stretch[points], stress=self.stress[points])
 
     def stress_at(self, stretch: float) -> float:
         """Nominal stress at a stretch, interpolated linearly between the points and from the origin, MPa."""
         return float(np.interp(stretch, [1.0, *self.stretch], [0.0, *self.stress]))
 
 
-def tension_basis(name: str, count: int, stretch: Array) -> Array:
+def invariant(stretch: Array, ratio: Array | float) -> Array:
+    """First invariants (n,) of tests at stretches (n,)."""
+    return np.asarray(stretch**2 + stretch ** (2.0 * ratio) + stretch ** (-2.0 - 2.0 * ratio))
+
+
+def tension_basis(name: str, count: int, stretch: Array, ratio: Array | float = UNIAXIAL) -> Array:
     """Columns (n, count) that add up to the nominal stress when multiplied by the constants; not for Ogden's law."""
-    plain, above = stretch - stretch**-2, first_invariant(stretch) - 3.0
+    plain, above = stretch - stretch ** (-3.0 - 2.0 * ratio), invariant(stretch, ratio) - 3.0
     if name == "neo-hookean":
         columns = [plain]
     elif name == "mooney-rivlin":
-        columns = [2.0 * plain, 2.0 * plain / stretch]
+        columns = [2.0 * plain, 2.0 * plain * stretch ** (2.0 * ratio)]
     else:
         columns = [2.0 * (i + 1) * plain * above**i for i in range(count)]
     return np.stack(columns, axis=1)
 
 
-def tension(name: str, constants: Sequence[float], stretch: Array) -> Array:
+def tension(name: str, constants: Sequence[float], stretch: Array, ratio: Array | float = UNIAXIAL) -> Array:
     """Nominal stress in MPa of a law by name at stretches (n,); its constants as in `mechanics.laws.LAWS`."""
     if name != "ogden":
-        return np.asarray(tension_basis(name, len(constants), stretch) @ np.asarray(constants, float))
-    pairs = zip(constants[::2], constants[1::2], strict=True)
+        return np.asarray(tension_basis(name, len(constants), stretch, ratio) @ np.asarray(constants, float))
+    pairs, across = zip(constants[::2], constants[1::2], strict=True), -1.0 - ratio
     return np.asarray(
-        sum((2.0 * mu / alpha) * (stretch ** (alpha - 1.0) - stretch ** (-0.5 * alpha - 1.0)) for mu, alpha in pairs)
+        sum((2.0 * mu / alpha) * (stretch ** (alpha - 1.0) - stretch ** (across * alpha - 1.0)) for mu, alpha in pairs)
     )
 
 
@@ -77,13 +103,16 @@ _COVERAGE = 2.0
 
 _STARTS: tuple[tuple[tuple[float, ...], ...], ...] = (
     ((2.0,), (4.0,), (8.0,)),
-    ((2.0, 6.0), (1.5, 4.0), (1.0, 10.0)),
+    ((2.0, 6.0), (1.5, 4.0), (1.0, 10.0), (2.0, -2.0)),
     ((1.5, 5.0, 12.0), (1.0, 3.0, 8.0)),
 )
 """Exponents from which Ogden's law is fitted, by its number of terms; the best of the fits is kept."""
 
 _EXPONENTS = (1.0, 25.0)
 """Bounds of Ogden's exponents. A negative one acts in biaxial states; tension hardly shows and cannot determine it."""
+
+_NEGATIVE = -10.0
+"""Least exponent where other tests than tension determine negative ones."""
 
 _MODULI = 50.0
 """Bound of a term's modulus, as a multiple of the modulus of the whole curve."""
@@ -125,18 +154,22 @@ class LawFit:
         """True if the data determine every constant: none is smaller than its uncertainty."""
         return all(abs(value) > error for value, error in zip(self.constants, self.errors, strict=True))
 
-    def stress(self, stretch: Array) -> Array:
-        """Nominal stress in MPa at stretches (n,)."""
-        return tension(self.form.name, self.constants, stretch)
+    def stress(self, stretch: Array, kind: str = "tension") -> Array:
+        """Nominal stress in MPa at stretches (n,) of a kind of test."""
+        return tension(self.form.name, self.constants, stretch, RATIOS[kind])
 
 
-def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array]:
-    """Stretch, stress, and stress that divides differences, (n,) each: the point's, at least its curve's at
-    `FROM_STRAIN`."""
-    stretch = np.concatenate([curve.stretch for curve in curves])
-    stress = np.concatenate([curve.stress for curve in curves])
-    least = np.concatenate([np.full(curve.stretch.size, curve.stress_at(1.0 + FROM_STRAIN)) for curve in curves])
-    return stretch, stress, np.maximum(stress, least)
+def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array, Array]:
+    """Stretch, stress, stress that divides differences, and the kind's ratio, (n,) each.
+
+    Differences are divided by the point's stress, at least its curve's at `FROM_STRAIN`, and so that every kind of test
+    has the same weight whatever its number of points."""
+    stretch, stress = (np.concatenate([getattr(curve, key) for curve in curves]) for key in ("stretch", "stress"))
+    sizes = [curve.stretch.size for curve in curves]
+    least, ratio = np.repeat([(curve.stress_at(1.0 + FROM_STRAIN), curve.ratio) for curve in curves], sizes, axis=0).T
+    kinds, kind, counts = np.unique(ratio, return_inverse=True, return_counts=True)
+    weight = np.sqrt(counts * kinds.size / ratio.size)
+    return stretch, stress, np.maximum(stress, least) * weight[kind], ratio
 
 
 def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
@@ -144,12 +177,12 @@ def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
 
     Relative differences give each part of the range the same weight; the stated misfit is relative too.
     """
-    stretch, stress, scale = joined_points(curves)
+    stretch, stress, scale, ratio = joined_points(curves)
     constants: Array
     if form.name == "ogden":
-        constants, spread = _ogden(form.parameters // 2, stretch, stress, scale)
+        constants, spread = _ogden(form.parameters // 2, stretch, stress, scale, ratio)
     else:
-        basis = tension_basis(form.name, form.parameters, stretch) / scale[:, None]
+        basis = tension_basis(form.name, form.parameters, stretch, ratio) / scale[:, None]
         constants = np.asarray(np.linalg.lstsq(basis, stress / scale, rcond=None)[0], float)
         spread = _spread(basis, basis @ constants - stress / scale)
     fit = LawFit(form, tuple(map(float, constants)), tuple(map(float, _COVERAGE * spread)), np.inf, np.inf)
@@ -165,7 +198,7 @@ def difference(fit: LawFit, curve: TensionCurve) -> tuple[Array, Array, Array]:
     each."""
     far = curve.stretch >= 1.0 + FROM_STRAIN
     stretch, stress = curve.stretch[far], curve.stress[far]
-    points = fit.stress(stretch) / stress - 1.0
+    points = fit.stress(stretch, curve.kind) / stress - 1.0
     near = np.abs(stretch[:, None] - stretch[None, :]) <= 0.5 * WINDOW
     return stretch, np.asarray(near @ points / near.sum(axis=1)), points
 
@@ -177,20 +210,21 @@ def _spread(jacobian: Array, residual: Array) -> Array:
     return np.sqrt(np.maximum(np.diag(covariance), 0.0))
 
 
-def _ogden(terms: int, stretch: Array, stress: Array, scale: Array) -> tuple[Array, Array]:
+def _ogden(terms: int, stretch: Array, stress: Array, scale: Array, ratio: Array) -> tuple[Array, Array]:
     """Constants mu, alpha, ... of the best fit from several starts, and their standard errors."""
     from scipy.optimize import least_squares
 
-    size = float(np.median(stress / np.maximum(stretch - stretch**-2, 1e-9)))
+    size = float(np.median(stress / np.maximum(tension_basis("neo-hookean", 1, stretch, ratio)[:, 0], 1e-9)))
+    least, most = (_NEGATIVE if (ratio != UNIAXIAL).any() else _EXPONENTS[0]), _EXPONENTS[1]
 
     def residual(flat: Array) -> Array:
         scaled = flat.copy()
         scaled[::2] *= size
-        return (tension("ogden", scaled.tolist(), stretch) - stress) / scale
+        return (tension("ogden", scaled.tolist(), stretch, ratio) - stress) / scale
 
-    low, high = np.tile([-_MODULI, _EXPONENTS[0]], terms), np.tile([_MODULI, _EXPONENTS[1]], terms)
+    low, high = np.tile([-_MODULI, least], terms), np.tile([_MODULI, most], terms)
     fits = []
-    for start in _STARTS[terms - 1]:
+    for start in (start for start in _STARTS[terms - 1] if min(start) >= least):
         first = np.ravel([(1.0 / terms, alpha) for alpha in start])
         fits.append(least_squares(residual, first, bounds=(low, high), max_nfev=200))
     best = min(fits, key=lambda fit: float(fit.cost))

@@ -1,4 +1,5 @@
-"""Tensile files, read and checked: stretch and nominal stress, in order, in units that an elastomer can have."""
+"""Files of tension, planar and equibiaxial tests, read and checked: stretch and nominal stress, in order, in units that
+an elastomer can have; and of discs clamped at their rim and inflated, whose pole is stretched equibiaxially."""
 
 import re
 from collections.abc import Sequence
@@ -22,6 +23,9 @@ _WORDS = {
     "strain": ("strain", "dehnung", "elongation", "allongement"),
     "stretch": ("stretch", "lambda", "streckung"),
     "force": ("force", "load", "kraft"),
+    "pressure": ("pressure", "druck", "pression"),
+    "radius": ("radius", "rayon"),
+    "height": ("height", "höhe", "hauteur"),
     "travel": ("extension", "displacement", "travel", "compression", "indentation", "position", "crosshead", "weg"),
 }
 """Words in a header that show the kind of its column."""
@@ -32,8 +36,12 @@ _STRESS_WORDS = {"n/mm2": 1.0, "n/mm²": 1.0, "n/mm^2": 1.0}
 _PERCENT = ("%", "percent", "per cent", "pct")
 _PLAIN = ("", "-", "mm/mm", "m/m", "1", "mm mm-1")
 
-_PAIRS = ((("stretch", "strain"), "stress"), (("stretch", "strain"), "force"), (("travel",), "force"))
+_STRETCHES = ("stretch", "strain")
+_PAIRS = ((_STRETCHES, "stress"), (_STRETCHES, "force"), (("travel",), "force"), (_STRETCHES, "pressure"))
 """Kinds of length column, and the kind of load column that each needs, the best pair first."""
+
+_KINDS = {"biaxial": "equibiaxial", "equibiaxial": "equibiaxial", "planar": "planar", "shear": "planar"}
+"""Kind of test by a word in the name of a column."""
 
 NAMES = "Engineering Strain, Engineering Stress (MPa)"
 """Column names that are understood, for messages."""
@@ -121,13 +129,13 @@ def _factor(name: str, kind: str, unit: str, file: str) -> float | None:
         if unit.lower() in _PLAIN:
             return 1.0 if unit else None
         raise InputError(f"{unit}: no unit of a {kind}", file=file, key=f"column {name}", remedy="give none, or %")
-    channel = {"stress": "pressure", "force": "force", "travel": "position"}[kind]
+    channel = {"stress": "pressure", "pressure": "pressure", "force": "force"}.get(kind, "position")
     known = unit_of(unit) if unit else None
     if kind == "stress" and unit.lower() in _STRESS_WORDS:
         return _STRESS_WORDS[unit.lower()]
     if known is not None and known[0] == channel:
         return UNITS[channel][known[1]]
-    right = {"stress": "MPa, kPa or psi", "force": "N", "travel": "mm"}[kind]
+    right = {"stress": "MPa, kPa or psi", "pressure": "kPa", "force": "N"}.get(kind, "mm")
     problem = f"{unit}: no unit of a {kind}" if unit else "states no unit"
     raise InputError(problem, file=file, key=f"column {name}", remedy=f"write it into the name, as {kind} ({right})")
 
@@ -153,15 +161,19 @@ _FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
 
 @dataclass(frozen=True, slots=True)
 class SpecimenSize:
-    """Lengths of a tensile specimen in mm; None for one that the file may state."""
+    """Lengths of a specimen in mm; None for one that the file may state. ``opening`` is the diameter within which an
+    inflated disc is free."""
 
     gauge_length: float | None = None
     width: float | None = None
     thickness: float | None = None
+    opening: float | None = None
 
 
-def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
-    """The loading curve of a tensile file: text, a workbook or parquet, with a header that names quantity and unit.
+def read_tension(path: Path, size: SpecimenSize | None = None, kind: str | None = None) -> TensionCurve:
+    """The loading curve of a file: text, a workbook or parquet, with a header that names quantity and unit.
+
+    ``kind`` is that of the test, a key of `RATIOS`; None: as the names of the columns say, else tension.
 
     Raises InputError for a file that cannot be read, units that no elastomer has, a stretch that falls, a negative
     stress, too few points, and true and engineering columns that contradict one another."""
@@ -170,7 +182,12 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
     facts = _facts(path)
     pair, length, load = _first_filled(path, pairs, layout)
     stretch, notes = _stretch(pair.length, length, file, _size(size, facts))
-    stress = _stress(pair.load, load, stretch, file, _size(size, facts))
+    kind = _kind(pair, kind, file)
+    if pair.load.kind == "pressure":
+        stress, note = _at_pole(path, layout, stretch, load * (pair.load.factor or 1.0), _size(size, facts))
+        notes.append(note)
+    else:
+        stress = _stress(pair.load, load, stretch, file, _size(size, facts))
     if pair.load.true:
         notes.append("true strain and stress were turned into stretch and nominal stress, for an incompressible solid")
     elif pair.load.kind == "stress" and not pair.load.stated:
@@ -181,9 +198,47 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
         problem, key = f"the stress that is greatest in size is {deep:.4g} MPa", f"column {pair.load.name}"
         remedy = "tension is positive, stretch and stress alike: turn the signs in the file"
         raise InputError(problem, file=file, key=key, remedy=remedy)
-    curve = _loading(TensionCurve(stretch, stress, file, tuple(notes), facts=facts))
+    curve = _loading(TensionCurve(stretch, stress, file, tuple(notes), facts=facts, kind=kind))
     _plausible(curve)
     return curve
+
+
+def _kind(pair: ColumnPair, given: str | None, file: str) -> str:
+    """Kind of test as given or as the columns are named; tension without either. Raises InputError if they differ."""
+    words = re.split(r"[\W_]+", f"{pair.length.name} {pair.load.name}".lower())
+    named = "equibiaxial" if pair.load.kind == "pressure" else next((_KINDS[w] for w in words if w in _KINDS), None)
+    if given is not None and named is not None and given != named:
+        problem = f"{given}, but its columns {pair.length.name} and {pair.load.name} are of a test that is {named}"
+        raise InputError(problem, file=file, key="kinds", remedy=f"give {named} for it, or other names to the columns")
+    return given or named or "tension"
+
+
+CAP = 1.10
+"""Radius of curvature at the pole over that of a spherical cap of the same height, of a flat disc clamped and inflated:
+membranes of neo-Hookean and Mooney-Rivlin solids (c01 up to 0.3 of the sum), integrated from pole to rim, have 1.09 to
+1.11 at pole stretches of 1.05 to 1.4, and 1.05 to 1.12 up to 2. The height does not give the stretch of the pole:
+Hill's 1 + (h/a)^2 (Phil. Mag. 41, 1133, 1950) makes the stress of the same membranes 14 to 37 % too small."""
+
+
+def _at_pole(path: Path, layout: TableLayout, stretch: Array, pressure: Array, size: SpecimenSize) -> tuple[Array, str]:
+    """Nominal stress (n,) at the pole of an inflated disc, p R l / (2 t0), as the true one is p R / (2 t) on a wall of
+    t = t0 / l^2; and a note. Raises InputError without the thickness, or the radius or height of the pole."""
+    known = [column for names in zip(layout.names, layout.units, strict=True) if (column := _column(*names, str(path)))]
+    bent = next((one for kind in ("radius", "height") for one in known if one.kind == kind), None)
+    if bent is None:
+        remedy = "add Radius (mm), of curvature at the pole, or Height (mm)"
+        raise InputError("a pressure makes no stress without the curvature of the pole", file=path, remedy=remedy)
+    for key, value in (("thickness", size.thickness), ("opening", size.opening)):
+        if value is None and (key == "thickness" or bent.kind == "height"):
+            problem = f"a pressure makes no stress without the disc's {key}"
+            raise InputError(problem, file=path, remedy=f"give `{key}` in mm")
+    radius = whole(path, (bent.name,), layout)[1][0] * (bent.factor or 1.0)
+    note = "an inflated disc: stress of its pole by pressure and radius of curvature"
+    if bent.kind == "height":
+        height = np.maximum(radius, 1e-9)
+        radius = CAP * ((0.5 * (size.opening or 0.0)) ** 2 + height**2) / (2.0 * height)
+        note += f", taken as {CAP:g} of a cap's of its height, which is within 5 % up to a stretch of 2"
+    return pressure * radius * stretch / (2.0 * (size.thickness or 1.0)), note
 
 
 def _first_filled(path: Path, pairs: list[ColumnPair], layout: TableLayout) -> tuple[ColumnPair, Array, Array]:
@@ -224,7 +279,10 @@ def _size(given: SpecimenSize | None, facts: dict[str, str]) -> SpecimenSize:
         return None
 
     return SpecimenSize(
-        given.gauge_length or stated("length"), given.width or stated("width"), given.thickness or stated("thickness")
+        given.gauge_length or stated("length"),
+        given.width or stated("width"),
+        given.thickness or stated("thickness"),
+        given.opening,
     )
 
 
@@ -312,7 +370,7 @@ def _plausible(curve: TensionCurve) -> None:
     if curve.stretch.size < LEAST_POINTS:
         raise InputError(f"{curve.stretch.size} points", file=curve.file, remedy=f"at least {LEAST_POINTS}")
     most = float(curve.stretch[-1])
-    if most < LEAST_STRETCH:
+    if float(curve.tension[-1]) < LEAST_STRETCH:
         problem = f"the largest stretch is {most:.4g}, a strain of {100 * (most - 1):.3g} %"
         remedy = f"a law needs at least {LEAST_STRETCH:g}; is the strain in per cent, or not a strain at all?"
         raise InputError(problem, file=curve.file, remedy=remedy)

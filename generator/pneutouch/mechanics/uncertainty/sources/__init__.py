@@ -16,7 +16,7 @@ from pneutouch.mechanics.uncertainty.sources.model_error import (
     model_sources,
     numerical_sources,
 )
-from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
+from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, biaxial_sources, modulus_sources
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
@@ -58,7 +58,8 @@ def sources(
     """
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
-    source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
+    source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *biaxial_sources(material, size)]
+    source_list += build_sources(batch, printer)
     if contact is not None:
         from pneutouch.mechanics.uncertainty.contact_model import contact_sources
 

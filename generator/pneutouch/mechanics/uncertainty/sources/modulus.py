@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.atlas.figures import SENSITIVITY
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.paper_sensor import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import UncertaintySource, counting
 from pneutouch.spec.grade import FROM_CURVE
-from pneutouch.spec.material import HARDEST, Material
+from pneutouch.spec.material import HARDEST, TENSION_ALONE_PERCENT, Material
 from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7
@@ -32,6 +32,8 @@ _READINGS = 20
 _ELASTIC = 3.0
 """Ratio of Young's modulus to shear modulus of an incompressible solid."""
 
+_MODULUS = "shear_modulus"
+
 _GENT = "Gent 1958, d ln E/dS"
 
 
@@ -49,17 +51,9 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
     assert modulus is not None
     size = validated.size
     if modulus.spread is not None:
-        return [
-            UncertaintySource(
-                "modulus as measured",
-                "shear_modulus",
-                _filled(modulus.spread / modulus.nominal, size),
-                "lognormal",
-                counting(size),
-                f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it",
-                True,
-            )
-        ]
+        spread = _filled(modulus.spread / modulus.nominal, size)
+        origin = f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it"
+        return [UncertaintySource("modulus as measured", _MODULUS, spread, "lognormal", counting(size), origin, True)]
     if modulus.source.startswith(FROM_CURVE):
         # The band is only that of the fraction; the uncertainty of the resins' own moduli is added.
         bare = modulus.model_copy(update={"low": None, "high": None})
@@ -68,19 +62,28 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
     return [_published(modulus, validated), _between_prints(material, size)]
 
 
+def biaxial_sources(material: Material, size: int) -> list[UncertaintySource]:
+    """Source for the free state of n sensors whose law was fitted to tension alone, as their walls are stretched in two
+    directions; its deviation is of one side, from 0 to c, and has the mean square c^2/3 (JCGM 100, F.2.4.5)."""
+    law = material.law
+    if law is None or law.largest_stretch is None or law.kinds:
+        return []
+    most, only = TENSION_ALONE_PERCENT[1], (FIGURES.index("limit_pressure_kPa"), FIGURES.index("apex_height_outer_mm"))
+    origin = f"equibiaxial stress up to {most:g} % higher than by a law of tension alone: three published rubbers"
+    standard = _filled(np.log1p(0.01 * most) / np.sqrt(3.0), size)
+    counts = counting(size, only=only)
+    return [UncertaintySource("law of tension alone", _MODULUS, standard, "log-rectangular", counts, origin, True)]
+
+
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
     """Source for the possible error of an assumed mixing curve; see `ResolvedMixingCurve.band_at`."""
-    return UncertaintySource(
-        "mixing fraction",
-        "shear_modulus",
-        _filled(_log_rectangular(modulus.most / modulus.least), size),
-        "log-rectangular",
-        counting(size),
+    standard = _filled(_log_rectangular(modulus.most / modulus.least), size)
+    origin = (
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli "
         "are given their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken "
         "(docs/background/mixing.md)",
-        False,
     )
+    return UncertaintySource("mixing fraction", _MODULUS, standard, "log-rectangular", counting(size), origin, False)
 
 
 def _log_rectangular(factor: float) -> float:
@@ -95,7 +98,6 @@ def _log_rectangular(factor: float) -> float:
 def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     known = modulus.low is not None and modulus.high is not None
     factor = modulus.most / modulus.least if known else ASSUMED_FACTOR
-    standard = _log_rectangular(factor)
     counts = counting(validated.size)
     counts[SENSITIVITY] = ~validated
     origin = (
@@ -105,15 +107,8 @@ def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     )
     if validated.any():
         origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
-    return UncertaintySource(
-        "published modulus",
-        "shear_modulus",
-        _filled(standard, validated.size),
-        "log-rectangular",
-        counts,
-        origin,
-        known,
-    )
+    spread = _filled(_log_rectangular(factor), validated.size)
+    return UncertaintySource("published modulus", _MODULUS, spread, "log-rectangular", counts, origin, known)
 
 
 def _hardness(material: Material) -> tuple[float, bool]:
@@ -134,16 +129,9 @@ def _between_prints(material: Material, size: int) -> UncertaintySource:
         if known and material.shore_a is not None
         else "assumed, as the seven resins of the paper's Table 1"
     )
-    return UncertaintySource(
-        "modulus between prints",
-        "shear_modulus",
-        _filled(logarithmic_slope(shore) * spread, size),
-        "lognormal",
-        counting(size),
-        origin,
-        known,
-        _READINGS - 1 if known else np.inf,
-    )
+    standard, freedom = _filled(logarithmic_slope(shore) * spread, size), _READINGS - 1 if known else np.inf
+    counts = counting(size)
+    return UncertaintySource("modulus between prints", _MODULUS, standard, "lognormal", counts, origin, known, freedom)
 
 
 AGEING = ("ageing", "ageing of the modulus")
@@ -176,15 +164,8 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
     origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
     )
-    return UncertaintySource(
-        AGEING[1],
-        "shear_modulus",
-        _filled(abs(change) / np.sqrt(3.0), size),
-        "log-rectangular",
-        counting(size, without=(SENSITIVITY,)),
-        origin,
-        known,
-    )
+    standard, counts = _filled(abs(change) / np.sqrt(3.0), size), counting(size, without=(SENSITIVITY,))
+    return UncertaintySource(AGEING[1], _MODULUS, standard, "log-rectangular", counts, origin, known)
 
 
 def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
@@ -195,12 +176,6 @@ def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
         if given is None
         else given.source
     )
-    return UncertaintySource(
-        AGEING[0],
-        "figure",
-        _filled(change / np.sqrt(3.0), size),
-        "rectangular",
-        counting(size, only=(SENSITIVITY,)),
-        f"sensitivity {change:.1%} off after a year: {origin}",
-        given is not None,
-    )
+    origin = f"sensitivity {change:.1%} off after a year: {origin}"
+    standard, counts = _filled(change / np.sqrt(3.0), size), counting(size, only=(SENSITIVITY,))
+    return UncertaintySource(AGEING[0], "figure", standard, "rectangular", counts, origin, given is not None)
