@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
-from pneutouch.catalogue.mixture import ArcProfile, mixed_material, mixing
+from pneutouch.catalogue.mixture import ArcProfile, at_temperature, mixed_material, mixing
+from pneutouch.catalogue.scene import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
@@ -175,3 +176,43 @@ def test_a_curve_that_there_is_not_and_a_fraction_beyond_it_are_refused(grade, s
 def test_a_resin_that_is_no_mix_reads_as_before():
     """What a result follows from is hashed, so a resin's content has no new key."""
     assert "curves" not in LIBRARY.load("materials", "FLX9950").model_dump(mode="json")
+
+
+def test_a_material_at_another_temperature_follows_its_master_curve(library):
+    found = library.load("materials", "Agilus30")
+
+    def modulus(material, time):
+        (terms,) = [series.terms for series in material.relaxation if series.shift]
+        left = 1 - sum(term.share for term in terms)
+        return left + sum(term.share * np.exp(-time / term.time_s) for term in terms), left
+
+    at = {celsius: at_temperature(found, celsius, "x.toml") for celsius in (10.0, 20.0, 30.0)}
+    assert at[20.0] == found
+    for celsius, factor in ((10.0, 32.3), (30.0, 0.061)):
+        ratio = at[celsius].shear_modulus_MPa.value / found.shear_modulus_MPa.value
+        # What is left after 600 s there is what the master curve has at 600 s over the factor.
+        assert ratio == pytest.approx(modulus(found, 600 / factor)[0] / modulus(found, 600)[0], rel=0.05)
+        # The same instantaneous modulus: shares of it, whose sum less that of the relaxed part is 1.
+        early, relaxed = modulus(at[celsius], 0.5)
+        assert ratio * early / relaxed == pytest.approx(
+            modulus(found, 0.5 / factor)[0] / modulus(found, 0.5)[1], rel=0.05
+        )
+    with pytest.raises(InputError) as caught:
+        at_temperature(found, 5.0, "x.toml")
+    assert (caught.value.key, caught.value.value) == ("environment.temperature_C", 5.0)
+
+
+def test_a_temperature_without_data_is_refused_with_the_one_that_works(library):
+    with pytest.raises(InputError) as caught:
+        load_scene("paper-dome", {"environment": {"temperature_C": 25.0}}, library)
+    assert caught.value.key == "environment.temperature_C"
+    good = float(str(caught.value.remedy).split()[1].rstrip(","))
+    assert load_scene("paper-dome", {"environment": {"temperature_C": good}}, library).membrane_material.title
+    warm = load_scene("agilus-dome", {"environment": {"temperature_C": 30.0}}, library).membrane_material
+    assert warm.shear_modulus_MPa.value < 0.206
+
+
+def test_the_relaxation_of_agilus_has_the_published_ratio(library):
+    (terms,) = [series.terms for series in library.load("materials", "Agilus30").relaxation if series.shift]
+    early, late = (1 - sum(term.share * (1 - np.exp(-time / term.time_s)) for term in terms) for time in (1.0, 600.0))
+    assert early / late == pytest.approx(4.1, rel=0.02)

@@ -247,8 +247,9 @@ def fit_material(
 ) -> Result:
     """Fit a hyperelastic law to tests (one file a specimen) or, with ``puck_mm``, to a puck test.
 
-    ``kinds`` are tension, planar or equibiaxial, one for each file; ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
-    into the user's folder and plot and figures into the folder given. Raises InputError for data that give no law.
+    ``kinds`` are tension, planar or equibiaxial, one for each file; ``puck_mm`` is diameter and thickness. Nothing is
+    written before `Result.save`: then the material file into the user's folder, plot and figures into the folder
+    given. Raises InputError for data that give no law.
     """
     from pneutouch.workflows.fit_material import fit_material as run
     from pneutouch.workflows.fit_material import fit_report, write_material

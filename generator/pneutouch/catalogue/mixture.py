@@ -1,4 +1,4 @@
-"""A material mixed from two base resins, by a mixing curve and the catalogue's materials."""
+"""A membrane's material that no file holds: mixed from two base resins by a mixing curve, or at another temperature."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -17,6 +17,7 @@ from pneutouch.spec.material import (
     ArcGrading,
     Material,
     MixByCurve,
+    Relaxation,
     density_problem,
     elastomer_modulus_problem,
 )
@@ -299,6 +300,56 @@ def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> Quanti
     value = float(np.average(law.modulus_at(fraction), weights=weight))
     source = f"{FROM_CURVE} {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}"
     return Quantity(value=value, low=low, high=high, spread=spread, source=source)
+
+
+REFERENCE_C, HELD_S = 20.0, 600.0
+"""Temperature, about that of the materials' data, and time of a press over which a modulus counts as relaxed."""
+
+
+def at_temperature(material: Material, celsius: float, where: str) -> Material:
+    """The material at a temperature: relaxation times and, of what is not relaxed after `HELD_S`, the modulus shift.
+
+    Raises InputError for a material without a shift, and beyond the temperatures of its table."""
+    if celsius == REFERENCE_C:
+        return material
+    reference = next((series for series in material.relaxation if series.shift), None)
+    key = "environment.temperature_C"
+    if reference is None or material.law is not None or material.shear_modulus_MPa is None:
+        problem = f"not known how {material.label} changes with temperature"
+        raise InputError(
+            problem, file=where, key=key, value=celsius, remedy=f"give {REFERENCE_C:g}, about that of its data"
+        )
+    at, factors = zip(*reference.shift, strict=True)
+    if not at[0] <= celsius <= at[-1]:
+        problem = f"the data of {material.label} do not cover it"
+        raise InputError(problem, file=where, key=key, value=celsius, remedy=f"give {at[0]:g} to {at[-1]:g}")
+    factor = float(np.exp(np.interp(celsius, at, np.log(factors))))
+    stiffer = _relaxed_share(_shifted(reference, factor)) / _relaxed_share(reference)
+    modulus = material.shear_modulus_MPa
+    moved = {k: stiffer * v for k in ("value", "low", "high") if (v := getattr(modulus, k)) is not None}
+    source = f"{modulus.source}; times {stiffer:.3g} at {celsius:g} C, by what is not relaxed after {HELD_S:g} s"
+    return material.model_copy(
+        update={
+            "title": f"{material.title} at {celsius:g} °C",
+            "shear_modulus_MPa": modulus.model_copy(update={**moved, "source": source}),
+            "relaxation": [_shifted(series, factor) for series in material.relaxation],
+        }
+    )
+
+
+def _shifted(series: Relaxation, factor: float) -> Relaxation:
+    """A series with all times multiplied; the part of a term that `HELD_S` does not relax joins the relaxed modulus,
+    as far as it differs from that at the temperature of the series."""
+    terms = []
+    for term in series.terms:
+        longer = factor * term.time_s
+        kept = 1.0 - float(np.exp(-HELD_S / longer) - np.exp(-HELD_S / term.time_s))
+        terms.append(term.model_copy(update={"share": kept * term.share, "time_s": longer}))
+    return series.model_copy(update={"terms": terms})
+
+
+def _relaxed_share(series: Relaxation) -> float:
+    return 1.0 - sum(term.share for term in series.terms)
 
 
 def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dict[str, Any]:

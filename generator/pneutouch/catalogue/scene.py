@@ -178,14 +178,19 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
 
 
 def membrane_material_of(design: DesignFile, where: str, library: Library) -> Material:
-    """The resin that the design names, or the mix that it describes."""
-    chosen = design.membrane.material
+    """The resin that the design names, or the mix that it describes, at the design's temperature."""
+    chosen, celsius = design.membrane.material, design.environment.temperature_C
     if isinstance(chosen, Grade):
         from pneutouch.catalogue.mixture import mixed_material
 
-        return mixed_material(chosen, library, file=where, shape=design.membrane.dome)
-    material: Material = library.load("materials", chosen, file=where, key="membrane.material")
-    return material
+        material: Material = mixed_material(chosen, library, file=where, shape=design.membrane.dome)
+    else:
+        material = library.load("materials", chosen, file=where, key="membrane.material")
+    if celsius is None:
+        return material
+    from pneutouch.catalogue.mixture import at_temperature
+
+    return at_temperature(material, celsius, where)
 
 
 def _calibration(design: DesignFile, where: str, library: Library) -> SensorCalibration | None:

@@ -205,6 +205,16 @@ class Pneumatics(SparseTable):
     )
 
 
+class Environment(SparseTable):
+    """[environment]: surroundings of the sensor."""
+
+    left_out = ("temperature_C",)
+
+    temperature_C: float | None = number(
+        None, unit="°C", low=-60, high=150, help="Temperature of the membrane; left out: that of its data, about 20."
+    )
+
+
 class Indentation(Table):
     """[indentation]: how the sensor is pressed (paper, section 3-B)."""
 
@@ -289,7 +299,7 @@ NO_CALIBRATION = "none"
 class DesignFile(SparseTable):
     """A whole design file."""
 
-    left_out = (CALIBRATION, "mould", "cast_ring", "accepted")
+    left_out = (CALIBRATION, "mould", "cast_ring", "accepted", "environment")
     prefixed: ClassVar[tuple[str, ...]] = ("accepted", "mould")
 
     calibration: str | None = Field(
@@ -303,6 +313,7 @@ class DesignFile(SparseTable):
     membrane: Membrane = Membrane()
     connector: Connector = Connector()
     pneumatics: Pneumatics = Pneumatics()
+    environment: Environment = Environment()
     indentation: Indentation = Indentation()
     contact: ContactTable = ContactTable()
     print: Print = Print()

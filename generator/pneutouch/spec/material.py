@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -68,12 +68,18 @@ class Relaxation(Table):
     terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
     temperature_C: float | None = Field(default=None, description="Temperature of the test, if known.")
     source: str = Field(min_length=8, description="Table, page, DOI or measurement; how far it was verified.")
+    shift: list[Annotated[list[float], Field(min_length=2, max_length=2)]] = Field(
+        default=[], max_length=100, description="Pairs of a temperature, °C, rising, and the factor on all times there."
+    )
 
     @model_validator(mode="after")
     def _relaxes_to_a_solid(self) -> Relaxation:
         total = math.fsum(term.share for term in self.terms)
         if not total < 1:
             raise ValueError(f"terms: shares add up to {total:.9g}; it must be less than 1, so that a modulus is left")
+        rising = all(after[0] > before[0] for before, after in pairwise(self.shift))
+        if not rising or any(not factor > 0 for _, factor in self.shift):
+            raise ValueError("shift: its temperatures must rise, and its factors be more than 0")
         times = [term.time_s for term in self.terms]
         for k, (before, after) in enumerate(pairwise(times)):
             if not after > before:
@@ -179,10 +185,10 @@ class MixByCurve(Table):
     )
 
 
-STIFFEST_ELASTOMER_MPA = 20.0
+STIFFEST_ELASTOMER_MPA = 60.0
 """Greatest shear modulus of a wall that this program models, our choice: beyond it a number is mostly in another unit,
-such as kPa, though some polyurethane elastomers are stiffer. Printed elastomers have up to 5.3 MPa, and 20 MPa is a
-Shore A of 96 by Gent's relation, the end of that scale."""
+such as kPa. Of 14 printed polyurethane filaments the stiffest has about 25 MPa (10.1089/3dp.2023.0010); 60 MPa is a
+Shore A of 98.7 by Gent's relation, and a tenth of the modulus of rigid connectors, which the models hold for rigid."""
 
 HARDEST = 99.9
 """Greatest Shore hardness: at 100 there is no modulus."""
@@ -260,6 +266,7 @@ class Material(SparseTable):
         default=[], description="Of a mix whose pair has several mixing curves: the same by each, the softest first."
     )
     relaxation: list[Relaxation] = Field(default=[], max_length=8, description="One entry a source.")
+    glass_transition_C: Quantity | None = Field(default=None, description="Temperature of the transition to glass.")
     shear_modulus_is: Literal["relaxed", "instantaneous"] | None = Field(
         default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."
     )

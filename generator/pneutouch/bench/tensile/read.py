@@ -148,7 +148,7 @@ LEAST_STRETCH = 1.2
 
 MODULI = (0.002, STIFFEST_ELASTOMER_MPA)
 """Range of shear moduli, MPa: outside it the numbers are in other units. The softest silicone gels have about 0.005,
-printed elastomers up to 5.3."""
+printed elastomers up to about 25."""
 
 _MOST_STRAIN = 20.0
 """Strains above this are per cent: the silicones tear at 10 at most."""

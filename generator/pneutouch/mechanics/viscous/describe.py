@@ -20,6 +20,7 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.models.solid import press_settings, solid_probe
+from pneutouch.mechanics.paper_sensor import young_modulus
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.continuation import LONGEST, PathFollower, PlateState
 from pneutouch.mechanics.solid.elements import FillingState, Gas
@@ -253,13 +254,55 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
         depth,
         [[one[i][0] for one in held] for i in states],
         {v: [[one[v][i][0] for one in loops] for i in states] for v in LOOP_SPEEDS},
-        SOLID_BASIS if by_solid else BASIS,
+        (*(SOLID_BASIS if by_solid else BASIS), *_glass(material)),
     )
+
+
+def _glass(material: Material) -> list[str]:
+    """Sentence on a transition to glass near the room's temperature; none for a resin without one that is known."""
+    at = material.glass_transition_C
+    if at is None or not material.relaxation:
+        return []
+    return [
+        f"{material.title} turns to glass at {at.least:g} to {at.most:g} °C: near them hysteresis may be over 30 %, "
+        "and modulus and times change within a few kelvin"
+    ]
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
     """Depth (mm) of the runs: `DEPTH_SHARE` of the dome's height, at most the test's depth and every ``range_ends``."""
     return float(min(DEPTH_SHARE * sensor.dome.shape.height, sensor.protocol.depth, *range_ends))
+
+
+AGED = (
+    "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its "
+    "level; above Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is "
+    "applied to the relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
+)
+"""Assumptions of the conversion from hardness to modulus, in words."""
+
+
+def ageing_unknown(material: Material) -> str | None:
+    """Reason why the change of the modulus in a year is not known, or None if it is."""
+    if material.shore_a is None or material.shore_a_one_year is None:
+        return f"the hardness of {material.title} after a year is not known"
+    if material.law is not None:
+        return f"{material.title} has a law of its own, whose constants hardness does not give"
+    return None
+
+
+def ageing_ratio(material: Material) -> float:
+    """Shear modulus after a year in light and air over the fresh modulus, by hardness; `AGED` states the assumptions.
+
+    Raises InputError for a resin without known ageing.
+    """
+    why = ageing_unknown(material)
+    if why is not None:
+        remedy = "give shore_a and shore_a_one_year in its material file, or leave `aged` out"
+        raise InputError(f"aged: {why}", remedy=remedy)
+    assert material.shore_a is not None and material.shore_a_one_year is not None
+    fresh, aged = material.shore_a.nominal, material.shore_a_one_year.nominal
+    return young_modulus(aged) / young_modulus(fresh)
 
 
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:

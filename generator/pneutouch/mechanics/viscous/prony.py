@@ -1,6 +1,6 @@
 """Linear relaxation of a resin as a Prony series.
 
-Also the checks that a resin's relaxation and ageing are known.
+Also the check that a resin's relaxation is known.
 """
 
 from dataclasses import dataclass

@@ -81,7 +81,7 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
     origin = (
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli "
         "are given their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken "
-        "(docs/background/mixing.md)",
+        "(docs/background/mixing.md)"
     )
     return UncertaintySource("mixing fraction", _MODULUS, standard, "log-rectangular", counting(size), origin, False)
 
