@@ -16,6 +16,7 @@ from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.results.record import plain as data
 from pneutouch.spec.grade import Grade
+from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
 from tests.catalogue.mixes import LAW, LIBRARY, mixed
 
@@ -204,11 +205,12 @@ def test_a_material_at_another_temperature_follows_its_master_curve(library):
 
 def test_a_temperature_without_data_is_refused_with_the_one_that_works(library):
     with pytest.raises(InputError) as caught:
-        load_scene("paper-dome", {"environment": {"temperature_C": 25.0}}, library)
+        load_scene("paper-dome", parse_changes(["environment.temperature_C=25"]), library)
     assert caught.value.key == "environment.temperature_C"
     good = float(str(caught.value.remedy).split()[1].rstrip(","))
-    assert load_scene("paper-dome", {"environment": {"temperature_C": good}}, library).membrane_material.title
-    warm = load_scene("agilus-dome", {"environment": {"temperature_C": 30.0}}, library).membrane_material
+    plain = load_scene("paper-dome", parse_changes([f"environment.temperature_C={good:g}"]), library)
+    assert plain.membrane_material == load_scene("paper-dome", library=library).membrane_material
+    warm = load_scene("agilus-dome", parse_changes(["environment.temperature_C=30"]), library).membrane_material
     assert warm.shear_modulus_MPa.value < 0.206
 
 

@@ -161,7 +161,7 @@ def uncertainty() -> str:
 
 
 def viscous() -> str:
-    """Force and pressure rise of a held press, and a cycle, of the paper's dome in Agilus30 by both sources."""
+    """Force and pressure rise of a held press, and a cycle, of the paper's dome in Agilus30 by all sources."""
     material: Material = Library((ROOT,)).load("materials", "Agilus30")
     sensor, series = material_sensor(material), prony_series(material)
     depth, driven = 0.5 * sensor.dome.inner_radius, [DRIVEN_kPa * KPA]
@@ -170,9 +170,9 @@ def viscous() -> str:
     with figure(180, 78) as drawn:
         left, right = drawn.subplots(1, 2)
         for k, (run, cycle) in enumerate(zip(held, cycles, strict=True)):
-            look = {"color": (ACCENT, INK)[k], "lw": 1.4}
+            look = {"color": (ACCENT, INK, MUTED)[k], "lw": 1.4}
             at = int(np.argmin(np.abs(run.times - 1.0)))
-            left.plot(run.times, 100 * run.force / run.force[at], label=f"data {'AB'[k]}", **look)
+            left.plot(run.times, 100 * run.force / run.force[at], label=f"data {'ABC'[k]}", **look)
             left.plot(run.times, 100 * run.rise / run.rise[at], ls=LINES[1], **look)
             right.plot(cycle.force_in, cycle.rise_in / KPA, **look)
             right.plot(cycle.force_out, cycle.rise_out / KPA, ls=LINES[1], **look)

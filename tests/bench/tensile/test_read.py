@@ -75,9 +75,10 @@ PRESSED = (0.9078, 0.917, 0.9305, 0.9427, 0.9526)
 def test_an_inflated_disc_without_its_size_is_refused(tmp_path):
     path = write(tmp_path, "stretch,pressure (kPa),height (mm)", LAMBDA, STRESS, LAMBDA)
     for size in (SpecimenSize(), SpecimenSize(None, None, 1.0)):
-        with pytest.raises(InputError, match=r"give `(thickness|opening)` in mm"):
+        with pytest.raises(InputError) as caught:
             read_tension(path, size)
-    with pytest.raises(InputError, match="curvature"):
+        assert "mm" in str(caught.value.remedy)
+    with pytest.raises(InputError):
         read_tension(write(tmp_path, "stretch,pressure (kPa)", LAMBDA, STRESS), SpecimenSize(None, None, 1.0, 20))
 
 

@@ -95,8 +95,11 @@ def test_assumed_numbers_are_what_their_sentences_say(library):
     assert rms(changes) == pytest.approx(modulus.ASSUMED_HARDNESS_CHANGE, abs=0.01)
     aged = [m.measured.sensitivity_change_one_year_percent for m in paths]
     assert rms([q.value / 100 for q in aged if q]) == pytest.approx(modulus.ASSUMED_AGEING, abs=0.001)
-    agilus = materials(library)["Agilus30"].shear_modulus_MPa
-    assert agilus.high / agilus.low == pytest.approx(modulus.ASSUMED_FACTOR)
+    # Of the four estimates of relaxed Agilus30 that are not of its master curve at the glass transition.
+    agilus, tango = (materials(library)[name].shear_modulus_MPa for name in ("Agilus30", "TangoPlus"))
+    assert tango.high / tango.low == pytest.approx(modulus.ASSUMED_FACTOR)
+    assert agilus.low == tango.low
+    assert agilus.high == pytest.approx(1.27 / 3, rel=0.01)
 
 
 def test_hardness_does_not_explain_how_much_the_paper_saw_sensitivity_age(library):

@@ -54,7 +54,7 @@ def _runs(sensor: Sensor, material: Material, depth: float) -> list[list[str]]:
             )
             wide = [one[i][j] for one in loops]
             cells = [w.ended if w.ended else " / ".join(f"{100 * x:.1f}" for x in w.hysteresis()) + " %" for w in wide]
-            found.append([f"{pressure:g}", "AB"[j], *lost, *cells])
+            found.append([f"{pressure:g}", "ABC"[j], *lost, *cells])
     return found
 
 
@@ -78,8 +78,10 @@ def agilus_table(library: Library) -> list[str]:
 
 
 def friction_table(library: Library) -> list[str]:
-    """The paper's dome in Agilus30, at half of R0, by pressure, source and friction, by the solid but without any."""
+    """The paper's dome in Agilus30, at half of R0, by pressure, source A or B and friction, by the solid but without
+    any."""
     material = resin(library, "Agilus30")
+    material = material.model_copy(update={"relaxation": material.relaxation[:2]})
     sensor = material_sensor(material)
     head = [
         "state, data",
@@ -101,11 +103,12 @@ def friction_table(library: Library) -> list[str]:
 def wall_table(library: Library) -> list[str]:
     """The same dome with other walls, at half of R0, no pressure and 5 mm/s: what the wall's share of the load does."""
     material = resin(library, "Agilus30")
-    rows = [_row(["wall, mm", "pressure rise lost, A", "B", "hysteresis, A", "B"]), _row(["---"] * 5)]
+    rows = [_row(["wall, mm", "pressure rise lost, A", "B", "C", "hysteresis, A", "B", "C"]), _row(["---"] * 7)]
     for wall in (0.75, 1.5, 2.25, 3.0):
         sensor = material_sensor(material).replace(wall_thickness=wall)
-        cells = _runs(sensor, material, 0.5 * sensor.dome.inner_radius)[:2]
-        rows.append(_row([f"{wall:g}", cells[0][3], cells[1][3], *(cell[-1].split(" /")[0] + " %" for cell in cells)]))
+        cells = _runs(sensor, material, 0.5 * sensor.dome.inner_radius)[:3]
+        wide = [cell[-1].split(" /")[0] + " %" for cell in cells]
+        rows.append(_row([f"{wall:g}", *(cell[3] for cell in cells), *wide]))
     return rows
 
 

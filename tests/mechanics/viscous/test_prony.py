@@ -82,9 +82,11 @@ def test_relaxation_without_a_word_on_the_modulus_is_refused(library):
         Material.model_validate({**agilus, "shear_modulus_is": None})
 
 
-def test_both_sources_of_agilus_are_kept_and_no_resin_of_the_paper_has_one(library):
+def test_all_sources_of_agilus_are_kept_and_no_resin_of_the_paper_has_one(library):
     agilus = library.load("materials", "Agilus30")
-    first, second = prony_series(agilus)
+    first, second, third = prony_series(agilus)
+    fall = third.modulus(np.array([1.0, 600.0]))
+    assert fall[0] / fall[1] == pytest.approx(4.1, rel=0.02)
     assert first.relaxed_share == pytest.approx(0.5932) and "dogbone" in first.source
     assert second.relaxed_share == pytest.approx(0.19) and "1904.11888" in second.source
     # Its own level agrees with the file's modulus: E0 3.25 MPa relaxed, over three.

@@ -13,8 +13,8 @@ from pneutouch.spec.material import HARDEST, TENSION_ALONE_PERCENT, Material
 from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7
-"""Ratio of the greatest to the least modulus if no independent value is known: an assumption, from the four estimates
-of relaxed Agilus30, 0.10 to 0.27 MPa (see `Agilus30.toml`)."""
+"""Ratio of the greatest to the least modulus if no independent value is known: an assumption, from four estimates of
+relaxed Agilus30, 0.10 to 0.27 MPa, without that at its glass transition, 0.42 MPa (see `Agilus30.toml`)."""
 
 ASSUMED_HARDNESS_SPREAD = 1.64
 """Standard deviation of Shore A if none is known: root mean square over the seven resins of the paper's Table 1."""
@@ -103,7 +103,7 @@ def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     origin = (
         f"range {modulus.least:g} to {modulus.most:g} MPa: {modulus.source}"
         if known
-        else f"no independent value known; assumed a factor of {factor:g} from end to end, as published for Agilus30"
+        else f"no independent value known; assumed a factor of {factor:g} from end to end, by four estimates of Agilus30"
     )
     if validated.any():
         origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
