@@ -316,36 +316,3 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
         respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity for one in (sensor, old)
     )
     return ratio, after_kPa_per_N / before_kPa_per_N - 1.0
-
-
-AGED = (
-    "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its "
-    "level; above Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is "
-    "applied to the relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
-)
-"""Assumptions of the conversion from hardness to modulus, in words."""
-
-
-def ageing_unknown(material: Material) -> str | None:
-    """Reason why the change of the modulus in a year is not known, or None if it is."""
-    if material.shore_a is None or material.shore_a_one_year is None:
-        return f"the hardness of {material.title} after a year is not known"
-    if material.law is not None:
-        return f"{material.title} has a law of its own, whose constants hardness does not give"
-    return None
-
-
-def ageing_ratio(material: Material) -> float:
-    """Shear modulus after a year in light and air over the fresh modulus, by hardness; `AGED` states the assumptions.
-
-    Raises InputError for a resin without known ageing.
-    """
-    why = ageing_unknown(material)
-    if why is not None:
-        remedy = "give shore_a and shore_a_one_year in its material file, or leave `aged` out"
-        raise InputError(f"aged: {why}", remedy=remedy)
-    from pneutouch.mechanics.paper_sensor import young_modulus
-
-    assert material.shore_a is not None and material.shore_a_one_year is not None
-    fresh, aged = material.shore_a.nominal, material.shore_a_one_year.nominal
-    return young_modulus(aged) / young_modulus(fresh)
