@@ -67,19 +67,6 @@ class ResolvedDesign:
         )
 
     @property
-    def tested_kPa(self) -> list[float]:
-        """The driving pressures, for runs on a rig and for a reader. Raises InputError for a vacuum."""
-        pressures_kPa = self.design.pneumatics.driving_pressures_kPa
-        if pressures_kPa[0] < 0.0:
-            raise InputError(
-                "runs on a rig and readers are of pressures from 0 kPa",
-                file=self.where,
-                key="pneumatics.driving_pressures_kPa[0]",
-                value=pressures_kPa[0],
-            )
-        return pressures_kPa
-
-    @property
     def hole_undersize(self) -> float:
         """Difference in diameter, mm, by which the connector's printer makes holes too small, to be added to bores."""
         return self.connector_printer.hole_undersize_mm.nominal

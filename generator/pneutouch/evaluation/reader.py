@@ -13,6 +13,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.calibrated import BEYOND
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.resins import tested_kPa
 from pneutouch.export.reader.reading import CELSIUS, ForceReader, Status
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState, predict
 from pneutouch.units import KPA
@@ -87,7 +88,7 @@ class ReaderGrid:
 def reader_grid(evaluation: Evaluation) -> ReaderGrid:
     """Tabulate a design's sensor. Raises ComputationError if a press has no range, InputError as `predict` does."""
     sensor, options = evaluation.sensor, evaluation.options
-    set_to = [pressure_kPa * KPA for pressure_kPa in evaluation.scene.tested_kPa]
+    set_to = [pressure_kPa * KPA for pressure_kPa in tested_kPa(evaluation.scene)]
     rows, computed, low, high = _driving_pressures(evaluation, min(set_to), max(set_to))
     computed_rows = [float(p) for p in rows[computed:]]
     prediction = predict(

@@ -101,3 +101,16 @@ def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float
             f"{resin}: driving pressure {error.pressure / KPA:g} kPa is beyond the limit point, where the dome snaps; "
             f"it must be less than {error.limit / KPA:.2f} kPa"
         ) from None
+
+
+def tested_kPa(scene: ResolvedDesign) -> list[float]:
+    """The driving pressures of a design, for runs on a rig and for a reader. Raises InputError for a vacuum."""
+    pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
+    if pressures_kPa[0] < 0.0:
+        raise InputError(
+            "runs on a rig and readers are of pressures from 0 kPa",
+            file=scene.where,
+            key="pneumatics.driving_pressures_kPa[0]",
+            value=pressures_kPa[0],
+        )
+    return pressures_kPa

@@ -11,7 +11,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.gauge import reading_of
-from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of, tested_kPa
 from pneutouch.evaluation.result import rating_record
 from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
@@ -178,7 +178,7 @@ def make_plan(
         inner_radius_mm=membrane.inner_radius_mm,
         wall_thickness_mm=membrane.wall_thickness_mm,
         ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
-        driving_pressures_kPa=tuple(scene.tested_kPa),
+        driving_pressures_kPa=tuple(tested_kPa(scene)),
         dead_volume_mL=subjects[0].sensor.gas.dead_volume / ML,
         dead_volume_note=assemble(scene).dead_volume_note or None,
         contact=contact_document(scene).get("contact"),
@@ -244,7 +244,7 @@ def plated_tests(subject: SimulatedResin, rated_kPa: float) -> Tests:
 
     The design's own pressures are kept; the one that the plan chooses for saturation is at most ``rated_kPa``.
     """
-    driving_kPa = tuple(subject.scene.tested_kPa)
+    driving_kPa = tuple(tested_kPa(subject.scene))
     top_kPa = min(SATURATION[-1], driving_kPa[-1], rated_kPa)
     pressures_kPa: dict[RunKind, tuple[float, ...]] = {
         "steps": driving_kPa,
@@ -301,7 +301,7 @@ def _runs(
     subject: SimulatedResin, sensor: str, tests: Tests, pressed_curves: PressCurves, rig: Rig, before: int
 ) -> list[PlannedRun]:
     """Runs of one specimen in order: leak and injection first, relaxation, which strains the wall longest, last."""
-    top_kPa = subject.scene.tested_kPa[-1]
+    top_kPa = tested_kPa(subject.scene)[-1]
     volume_mL = injection(pressed_curves, subject.rating, rig).sensor_volume_mL
     planned: list[tuple[RunKind, float, int, list[PlannedStep], tuple[ExpectedPoint, ...]]] = [
         ("leak", top_kPa, 1, leak_steps(top_kPa, rig), ())

@@ -8,6 +8,7 @@ from pneutouch.bench.indents import CLEARANCE, RunProtocol
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves, line_pressure, sensor_pressure
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
+from pneutouch.evaluation.resins import tested_kPa
 from pneutouch.mechanics.rating import Rating
 from pneutouch.results.plan import ExpectedPoint, InjectedVolume, PlannedInjection, PlanViolation
 from pneutouch.spec.campaign import Rig
@@ -115,7 +116,7 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
 
 def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
     """Raise InputError if the sensor as designed meets a limit at one of the design's driving pressures."""
-    for k, pressure_kPa in enumerate(scene.tested_kPa):
+    for k, pressure_kPa in enumerate(tested_kPa(scene)):
         if rating.severity(pressure_kPa * KPA) == "error":
             raise InputError(
                 f"{resin}: {rating.excess(pressure_kPa * KPA)}",

@@ -10,7 +10,7 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.listing import known_design
 from pneutouch.catalogue.scene import split_calibration
 from pneutouch.errors import InputError
-from pneutouch.evaluation.resins import SimulatedResin
+from pneutouch.evaluation.resins import SimulatedResin, tested_kPa
 from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, PlannedKind, campaign_of
 from pneutouch.spec.files import exists, read_bytes
@@ -40,7 +40,7 @@ def driving_pressures_kPa(subject: SimulatedResin, options: RequestedRuns) -> li
         listed = [run for run in options.planned if run.resin == subject.name]
         # An injection begins at ambient pressure whatever the others are driven at.
         given_kPa = list({run.driving_pressure_kPa for run in listed if run.kind != "injection"}) or [0.0]
-    return sorted(subject.scene.tested_kPa if given_kPa is None else given_kPa)
+    return sorted(tested_kPa(subject.scene) if given_kPa is None else given_kPa)
 
 
 def sensors_of(resin: str, options: RequestedRuns) -> list[str]:
