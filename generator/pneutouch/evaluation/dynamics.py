@@ -86,7 +86,7 @@ def sensor_bandwidth(assembly: Assembly, sensor: Sensor, prediction: SensorPredi
         for one in series:
             dynamics = state_dynamics(assembly, sensor, state, one, free_compliance(prediction, state))
             source = None if one is None else one.source
-            known = end > 0.0 or assembly.gauge_volume_known is not None
+            known = end > 0.0 or assembly.known_gauge_volume_mL is not None
             lowest = None if known else with_end(dynamics, UNKNOWN_END)
             figures = band_figures(dynamics), step_figures(dynamics), lowest
             states.append(DynamicState(state.driving_pressure, source, dynamics, *figures))

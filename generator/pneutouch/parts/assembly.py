@@ -125,17 +125,17 @@ class Assembly:
         return self.drawn_volume if stated_mL is None else stated_mL * ML
 
     @property
-    def gauge_volume_known(self) -> float | None:
+    def known_gauge_volume_mL(self) -> float | None:
         """Gas volume inside the gauge, mL, as the design or the gauge's maker states it; None if neither does."""
-        stated, gauge = self.scene.design.pneumatics.gauge_volume_mL, self.scene.gauge
-        if stated is not None or gauge is None or gauge.inner_volume_mL is None:
-            return stated
+        stated_mL, gauge = self.scene.design.pneumatics.gauge_volume_mL, self.scene.gauge
+        if stated_mL is not None or gauge is None or gauge.inner_volume_mL is None:
+            return stated_mL
         return gauge.inner_volume_mL.nominal
 
     @property
     def gauge_volume_mL(self) -> float:
         """Gas volume inside the gauge, mL; 0 if it is not known."""
-        return self.gauge_volume_known or 0.0
+        return self.known_gauge_volume_mL or 0.0
 
     @property
     def drawn_volume(self) -> float:
