@@ -19,7 +19,7 @@ names = []
 for state in viscous["states"]:
     for number, source in enumerate(state["by_source"]):
         held = source["relaxation"]
-        place, names = len(names), [*names, f"{state['driving_pressure_kPa']:g} kPa,\nsource {'AB'[number]}"]
+        place, names = len(names), [*names, f"{state['driving_pressure_kPa']:g} kPa,\nsource {chr(ord('A') + number)}"]
         values = [held["force_loss_percent"], held["pressure_rise_loss_percent"]]
         axes.bar(place - 0.2, values[0], 0.36, color="0.3", label="" if place else "contact force")
         axes.bar(
