@@ -30,7 +30,7 @@ for state in viscous["states"]:
                 "\n", " "
             )
         )
-for letter, source in zip("AB", viscous["sources"], strict=True):
+for letter, source in zip("ABCDEF", viscous["sources"], strict=False):
     print(f"{letter}: {source}")
 axes.set_xticks(np.arange(len(names)), names)
 axes.set(xlabel="driving pressure and source of the data", ylabel="loss from 1 to 600 s (%)")
