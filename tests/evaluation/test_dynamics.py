@@ -49,8 +49,8 @@ def test_a_shorter_tube_is_quicker_in_every_figure(library):
 def test_every_series_of_relaxation_data_has_a_state(drawn):
     pressures = drawn.scene.design.pneumatics.driving_pressures_kPa
     document = data(dynamics(drawn.bandwidth))
-    assert len(document["states"]) == 2 * len(pressures)
-    assert len({state["relaxation_source"] for state in document["states"]}) == 2
+    assert len(document["states"]) == 3 * len(pressures)
+    assert len({state["relaxation_source"] for state in document["states"]}) == 3
     assert all(0 < state["fast_wall_over_slow"] < 1 < state["fast_gas_over_slow"] < 1.4 for state in document["states"])
 
 
@@ -72,7 +72,7 @@ def test_the_compliance_of_the_dome_is_the_slope_of_its_inflation(drawn):
 
 def test_the_figures_are_stated_in_words(drawn):
     lines = dynamics_lines(dynamics(drawn.bandwidth))
-    assert len(lines) == 2
+    assert len(lines) == 3
     assert "first resonance" in lines[0] and "data A" in lines[0] and "data B" in lines[1]
 
 

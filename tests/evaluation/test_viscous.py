@@ -79,7 +79,7 @@ def test_the_membrane_and_a_sensor_outside_the_atlas_say_why(library, agilus):
 
 def test_the_text_has_one_line(agilus, library):
     text = prediction_text(predicted_in_full(agilus))
-    assert sum("sources of relaxation data" in line for line in text.splitlines()) == 1
+    assert sum("loses" in line for line in text.splitlines()) == 1
     assert "glass" in text
     last = data(viscous(agilus.viscous_runs))["states"][-1]["by_source"]
     lost = [one["relaxation"]["pressure_rise_loss_percent"] for one in last]

@@ -61,3 +61,15 @@ def test_a_rigid_material_of_no_known_density_is_refused(library, density, said)
         read(library, "VeroClear", density_g_per_cm3=quantity(value=density))
     with refused("", fields=["density_g_per_cm3"]):
         read(library, "DragonSkin20", density_g_per_cm3=quantity(value=7.9))
+
+
+@pytest.mark.parametrize("shift", [[[20.0, 1.0], [20.0, 2.0]], [[10.0, 0.0], [20.0, 1.0]], [[20.0]]])
+def test_a_shift_by_temperature_rises_and_has_factors_above_zero(library, shift):
+    terms = [{"share": 0.5, "time_s": 1.0}]
+    with pytest.raises(InputError):
+        read(
+            library,
+            "TangoPlus",
+            shear_modulus_is="relaxed",
+            relaxation=[{"terms": terms, "source": "made up for a test", "shift": shift}],
+        )

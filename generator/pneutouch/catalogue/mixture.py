@@ -1,6 +1,7 @@
 """A membrane's material that no file holds: mixed from two base resins by a mixing curve, or at another temperature."""
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -313,18 +314,16 @@ def at_temperature(material: Material, celsius: float, where: str) -> Material:
     if celsius == REFERENCE_C:
         return material
     reference = next((series for series in material.relaxation if series.shift), None)
-    key = "environment.temperature_C"
+    refused = partial(InputError, file=where, key="environment.temperature_C", value=celsius)
     if reference is None or material.law is not None or material.shear_modulus_MPa is None:
-        problem = f"not known how {material.label} changes with temperature"
-        raise InputError(
-            problem, file=where, key=key, value=celsius, remedy=f"give {REFERENCE_C:g}, about that of its data"
-        )
+        remedy = f"give {REFERENCE_C:g}, about that of its data"
+        raise refused(f"not known how {material.label} changes with temperature", remedy=remedy)
     at, factors = zip(*reference.shift, strict=True)
     if not at[0] <= celsius <= at[-1]:
-        problem = f"the data of {material.label} do not cover it"
-        raise InputError(problem, file=where, key=key, value=celsius, remedy=f"give {at[0]:g} to {at[-1]:g}")
+        raise refused(f"the data of {material.label} do not cover it", remedy=f"give {at[0]:g} to {at[-1]:g}")
     factor = float(np.exp(np.interp(celsius, at, np.log(factors))))
-    stiffer = _relaxed_share(_shifted(reference, factor)) / _relaxed_share(reference)
+    left, usual = (1.0 - sum(term.share for term in one.terms) for one in (_shifted(reference, factor), reference))
+    stiffer = left / usual
     modulus = material.shear_modulus_MPa
     moved = {k: stiffer * v for k in ("value", "low", "high") if (v := getattr(modulus, k)) is not None}
     source = f"{modulus.source}; times {stiffer:.3g} at {celsius:g} C, by what is not relaxed after {HELD_S:g} s"
@@ -346,10 +345,6 @@ def _shifted(series: Relaxation, factor: float) -> Relaxation:
         kept = 1.0 - float(np.exp(-HELD_S / longer) - np.exp(-HELD_S / term.time_s))
         terms.append(term.model_copy(update={"share": kept * term.share, "time_s": longer}))
     return series.model_copy(update={"terms": terms})
-
-
-def _relaxed_share(series: Relaxation) -> float:
-    return 1.0 - sum(term.share for term in series.terms)
 
 
 def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dict[str, Any]:

@@ -240,7 +240,6 @@ def _viscous(viscous: Viscous) -> list[str]:
         f"held at {viscous.depth_mm:.2f} mm and {last.driving_pressure_kPa:g} kPa the pressure rise loses "
         f"{_span(held)} from 1 s to 600 s; hysteresis at {speed} {_span(wide)} of full scale "
         f"({counted(len(viscous.sources), 'source')} of relaxation data)",
-        # After the model and its kernel: what is known of the resin.
         *viscous.basis[2:],
     ]
 

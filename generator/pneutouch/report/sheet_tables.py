@@ -221,12 +221,13 @@ def sources(sheet: SheetData) -> list[list[str]]:
         ("Shore A", m.shore_a),
         ("Tensile strength, MPa", m.tensile_strength_MPa),
         ("Elongation at break, %", m.elongation_at_break_percent),
+        ("Glass transition, °C", m.glass_transition_C),
+        ("Hysteresis at 0 kPa, %", None if m.measured is None else m.measured.hysteresis_percent),
     ]
     rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
-    if m.measured is not None:
-        rows.append(
-            ["Hysteresis at 0 kPa, %", m.measured.hysteresis_percent.text(), m.measured.hysteresis_percent.source]
-        )
+    shifts = [series.shift for series in m.relaxation if series.shift]
+    known = {"Relaxation": m.relaxation, "Change with temperature": shifts, "Mullins softening": []}
+    rows += [[what, "not known", ""] for what, data in known.items() if not data]
     accuracy = sheet.scene.printer.accuracy_mm
     return [
         ["The paper", "", prose.WORDS["datasheet"]["paper"]],

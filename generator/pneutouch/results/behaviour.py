@@ -135,7 +135,7 @@ class Viscous:
     sources: tuple[str, ...] = ()
     """Sources of relaxation data."""
     basis: tuple[str, ...] = ()
-    """Assumptions, in sentences."""
+    """Assumptions, in sentences: the model, its relaxation, and what is known of the resin."""
     states: tuple[ViscousState, ...] = ()
     """One entry a driving pressure."""
 

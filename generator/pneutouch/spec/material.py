@@ -77,8 +77,7 @@ class Relaxation(Table):
         total = math.fsum(term.share for term in self.terms)
         if not total < 1:
             raise ValueError(f"terms: shares add up to {total:.9g}; it must be less than 1, so that a modulus is left")
-        rising = all(after[0] > before[0] for before, after in pairwise(self.shift))
-        if not rising or any(not factor > 0 for _, factor in self.shift):
+        if any(not a[0] > b[0] for b, a in pairwise(self.shift)) or any(not one[1] > 0 for one in self.shift):
             raise ValueError("shift: its temperatures must rise, and its factors be more than 0")
         times = [term.time_s for term in self.terms]
         for k, (before, after) in enumerate(pairwise(times)):

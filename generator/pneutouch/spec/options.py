@@ -238,9 +238,7 @@ class FitOptions(Options):
     gauge_length_mm: float | None = _length(_SPECIMEN)
     width_mm: float | None = _length(_SPECIMEN)
     thickness_mm: float | None = _length(_SPECIMEN)
-    opening_mm: float | None = option(
-        None, "Diameter in which an inflated disc is free.", unit="mm", low=0.05, high=1000, metavar="MM"
-    )
+    opening_mm: float | None = _length("Diameter in which an inflated disc is free.")
     kinds: list[Literal["tension", "planar", "equibiaxial"]] = option(
         [], "Kind of each file: tension, planar, equibiaxial.", metavar="KIND,KIND", shown="as its columns say"
     )

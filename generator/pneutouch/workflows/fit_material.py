@@ -318,13 +318,12 @@ def _by(fitted: FittedMaterial) -> str:
 def _modulus(fitted: FittedMaterial) -> Quantity:
     neo, value = fitted.neo_hookean, _four(fitted.neo_hookean.constants[0])
     how = f"neo-Hookean fit to a stretch of {fitted.largest:.3g}, misfit {100 * neo.misfit:.3g} %"
-    each = () if fitted.choice is None else fitted.choice.each
+    each, kinds = ((), ()) if fitted.choice is None else (fitted.choice.each, fitted.choice.kinds)
     low = high = spread = None
     if len(each) > 1:
         low, high = _four(min(*each, value)), _four(max(*each, value))
-        assert fitted.choice is not None
         # Kinds of test differ by more than the scatter of specimens.
-        spread = _four(float(np.std(each, ddof=1))) if len(fitted.choice.kinds) == 1 else None
+        spread = _four(float(np.std(each, ddof=1))) if len(kinds) == 1 else None
         how += f"; low, high{' and spread' if spread else ''}: of {len(each)} specimens"
     return Quantity(value=value, low=low, high=high, spread=spread, source=f"{_test(fitted)}: {how}{_by(fitted)}")
 

@@ -282,7 +282,7 @@ def _size(given: SpecimenSize | None, facts: dict[str, str]) -> SpecimenSize:
         given.gauge_length or stated("length"),
         given.width or stated("width"),
         given.thickness or stated("thickness"),
-        given.opening,
+        given.opening or stated("opening"),
     )
 
 

@@ -261,12 +261,9 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
 def _glass(material: Material) -> list[str]:
     """Sentence on a transition to glass near the room's temperature; none for a resin without one that is known."""
     at = material.glass_transition_C
-    if at is None or not material.relaxation:
-        return []
-    return [
-        f"{material.title} turns to glass at {at.least:g} to {at.most:g} °C: near them hysteresis may be over 30 %, "
-        "and modulus and times change within a few kelvin"
-    ]
+    near = "" if at is None else f"at {at.least:g} to {at.most:g} °C"
+    then = "near it hysteresis may be over 30 %, and modulus and times change within a few kelvin"
+    return [f"{material.title} turns to glass {near}: {then}"] if near else []
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:

@@ -103,7 +103,7 @@ def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     origin = (
         f"range {modulus.least:g} to {modulus.most:g} MPa: {modulus.source}"
         if known
-        else f"no independent value known; assumed a factor of {factor:g} from end to end, by estimates of Agilus30"
+        else f"no independent value known; assumed a factor of {factor:g} from end to end, by four values of Agilus30"
     )
     if validated.any():
         origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
