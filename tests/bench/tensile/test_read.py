@@ -77,7 +77,7 @@ def test_an_inflated_disc_without_its_size_is_refused(tmp_path):
     for size in (SpecimenSize(), SpecimenSize(None, None, 1.0)):
         with pytest.raises(InputError) as caught:
             read_tension(path, size)
-        assert "mm" in str(caught.value.remedy)
+        assert "_mm" in str(caught.value.remedy)
     with pytest.raises(InputError):
         read_tension(write(tmp_path, "stretch,pressure (kPa)", LAMBDA, STRESS), SpecimenSize(None, None, 1.0, 20))
 

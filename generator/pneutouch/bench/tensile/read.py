@@ -231,7 +231,7 @@ def _at_pole(path: Path, layout: TableLayout, stretch: Array, pressure: Array, s
     for key, value in (("thickness", size.thickness), ("opening", size.opening)):
         if value is None and (key == "thickness" or bent.kind == "height"):
             problem = f"a pressure makes no stress without the disc's {key}"
-            raise InputError(problem, file=path, remedy=f"give `{key}` in mm")
+            raise InputError(problem, file=path, remedy=f"give `{key}_mm`")
     radius = whole(path, (bent.name,), layout)[1][0] * (bent.factor or 1.0)
     note = "an inflated disc: stress of its pole by pressure and radius of curvature"
     if bent.kind == "height":
