@@ -133,8 +133,8 @@ def test_a_mixing_curve_through_a_plastic_is_refused(tmp_path):
 
 
 def stiff_curve(tmp_path, factor=1.0):
-    """A measured curve that goes on to 35 MPa, all moduli times a factor."""
-    points = [point(f, shear_modulus_MPa=factor * mu) for f, mu in ((0.0, 0.2), (0.2, 0.8), (0.5, 35.0))]
+    """A measured curve that goes on to 105 MPa, all moduli times a factor."""
+    points = [point(f, shear_modulus_MPa=factor * mu) for f, mu in ((0.0, 0.2), (0.2, 0.8), (0.5, 105.0))]
     return changed(tmp_path, curves=None, points=points)
 
 
@@ -143,11 +143,11 @@ def test_a_stiff_point_of_a_curve_is_no_fault_of_a_soft_mix(tmp_path):
     assert 0.2 < mixed(0.15, library=library).shear_modulus_MPa.value < 0.8
     law = mixing("TangoPlus", "VeroClear", library)
     top = law.wall_top
-    assert float(law.modulus_at(np.array(top))) == pytest.approx(20.0, rel=5e-3)
-    assert mixed(top, library=library).shear_modulus_MPa.value <= 20.0
+    assert float(law.modulus_at(np.array(top))) == pytest.approx(60.0, rel=5e-3)
+    assert mixed(top, library=library).shear_modulus_MPa.value <= 60.0
     assert greatest(law) == top
     resins = [mixed(float(fraction), library=library) for fraction in levels(law)]
-    assert resins[-1].shear_modulus_MPa.value == pytest.approx(20.0, rel=5e-3)
+    assert resins[-1].shear_modulus_MPa.value == pytest.approx(60.0, rel=5e-3)
 
 
 @pytest.mark.parametrize(("fraction", "at"), [(0.5, None), ([0.0, 0.5], None)], ids=["constant", "graded"])
@@ -157,10 +157,10 @@ def test_the_stiffest_place_of_a_mix_is_bounded(tmp_path, fraction, at):
     with pytest.raises(InputError) as error:
         mixed(fraction, at, library=library)
     said = (
-        "here: membrane.material: fraction = 0.5: by the mixing curve TangoPlus+VeroClear its shear modulus of 35 MPa"
+        "here: membrane.material: fraction = 0.5: by the mixing curve TangoPlus+VeroClear its shear modulus of 105 MPa"
     )
     assert said in str(error.value)
-    assert "take at most 0.464" in str(error.value) and "of VeroClear, or correct" in str(error.value)
+    assert "take at most 0.473" in str(error.value) and "of VeroClear, or correct" in str(error.value)
 
 
 def test_a_curve_in_kPa_is_refused_where_it_is_used(tmp_path):
