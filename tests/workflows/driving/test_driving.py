@@ -11,6 +11,7 @@ from pneutouch.spec.tasks import DrivingTask
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.driving import LeakSource, driving_record, driving_schedule
 from pneutouch.workflows.driving.pressures import band, reach_curves, solutions
+from tests.evaluation.calibrated import DEAD, library_of, predicted
 
 LEAK = LeakSource(0.05, 20.0, cap=True, where="a test")
 
@@ -55,6 +56,18 @@ def test_a_sure_figure_has_a_narrow_band(curves, monkeypatch):
     slope = np.gradient(values, curves.pressures)[k]
     assert ends.high - ends.low == pytest.approx(2 * 2e-3 / abs(slope), rel=0.05)
     assert not ends.open_low and not ends.open_high
+
+
+def test_the_band_of_a_calibrated_sensor_is_that_on_the_day_of_its_calibration(library, tmp_path):
+    """Ageing since then has most of its variance: counted in, no further run would close the band."""
+    place, figure = library_of(tmp_path, library), "sensitivity_kPa_per_N"
+    curves = reach_curves("paper-dome@mine", DEAD, library=place, model="atlas")
+    pressure = curves.budgets[1][0]
+    at = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [pressure / KPA]})
+    known = at.uncertainty[0].known[figure]
+    width = curves.widths(figure)[np.searchsorted(curves.pressures, pressure)]
+    assert width == pytest.approx(np.log(known.at_calibration.high / known.value), rel=1e-3)
+    assert width < 0.7 * np.log(known.high / known.value)
 
 
 def test_a_curve_that_turns_has_two_solutions_and_the_lower_comes_first(library):

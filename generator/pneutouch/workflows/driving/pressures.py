@@ -69,16 +69,16 @@ class ReachCurves:
         return np.array([figure_of(state, figure) for state in self.states])
 
     def widths(self, figure: str) -> Array:
-        """Expanded uncertainty (k = 2) of a figure's logarithm at every driving pressure, (n,); NaN if not known."""
+        """Expanded uncertainty (k = 2) of a figure's logarithm at every driving pressure, (n,); NaN if not known.
+
+        That of a calibrated sensor is at the age of its calibration."""
         key = BUDGET_KEYS.get(figure, figure)
-        known = [
-            (pressure, 2.0 * entry.known[key].standard_uncertainty_relative)
-            for pressure, entry in self.budgets
-            if key in entry.known
-        ]
+        known = [(pressure, entry.known[key]) for pressure, entry in self.budgets if key in entry.known]
         if not known:
             return np.full(len(self.states), np.nan)
-        at, width = np.array(known).T
+        at = [pressure for pressure, _ in known]
+        ends = [record.at_calibration or record for _, record in known]
+        width = [0.5 * np.log(end.high / end.low) for end in ends]
         return np.asarray(np.interp(self.pressures, at, width))
 
     @property
