@@ -182,7 +182,7 @@ def test_what_is_wrong_in_several_files_is_printed_once(tmp_path, recording):
 def test_columns_that_an_error_rejects_are_not_to_be_kept(tmp_path, recording):
     assert "note: logger.log and 1 more: read as follows" in twins(tmp_path, recording, "g").stderr
     rejected = twins(tmp_path, recording, "N")
-    assert rejected.exit_code == 3 and "set columns.force.unit" in rejected.stderr
+    assert rejected.exit_code == 3 and "set columns.force = {" in rejected.stderr
     assert "to keep it" not in rejected.stderr
 
 

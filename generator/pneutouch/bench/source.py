@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from pneutouch.errors import InputError, shown
+from pneutouch.errors import InputError
 from pneutouch.results.measured import ReadColumn, ReadTables
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
@@ -162,18 +162,19 @@ def as_option(**columns: Column) -> str:
 def otherwise(columns: ColumnMap, key: str, unit: str = "") -> str:
     """Remedy that reads a channel in another unit, or without one with the other sign, as option and campaign key."""
     column: Column = getattr(columns, key)
-    field, value = ("unit", unit) if unit else ("sign", -column.sign)
-    option = as_option(**{key: column.model_copy(update={field: value})})
-    return f"{option}, or in a campaign set columns.{key}.{field} = {shown(value)}"
+    return _stated(**{key: column.model_copy(update={"unit": unit} if unit else {"sign": -column.sign})})
 
 
 def exchanged(columns: ColumnMap, first: str, second: str) -> str:
     """Remedy that reads two channels each from the column of the other."""
     one, other = getattr(columns, first), getattr(columns, second)
-    names = {
-        key: to.model_copy(update={"name": by.name}) for key, to, by in ((first, one, other), (second, other, one))
-    }
-    return f"{as_option(**names)}, or in a campaign exchange columns.{first}.name and columns.{second}.name"
+    pairs = ((first, one, other), (second, other, one))
+    return _stated(**{key: to.model_copy(update={"name": by.name}) for key, to, by in pairs})
+
+
+def _stated(**columns: Column) -> str:
+    keys = (f"columns.{key} = {value_text(plain(_entry(one)))}" for key, one in columns.items())
+    return f"{as_option(**columns)}, or in a campaign set {' and '.join(keys)}"
 
 
 def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: FileFormat = _ANY) -> MeasuredFile:

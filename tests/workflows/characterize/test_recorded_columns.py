@@ -44,8 +44,14 @@ def test_columns_named_in_a_refusal_give_the_figures_of_the_truth(name, spoil, t
         message = str(refused)
     (text,) = re.findall(r"give `columns` (\S+?),? (?:or|of) ?", message)
     found = figures(read(tmp_path, recording, reading={"columns": parse_columns([text])}))
+    keys = re.findall(r"columns\.\w+ = \{[^}]*\}", message)
+    # Of an absolute pressure in a lone file the option alone is named.
+    keys = keys or [f"columns.pressure = {{ name = 'pressure_kPa', unit = '{text.rpartition(':')[2]}' }}"]
+    (tmp_path / "campaign.toml").write_text("\n".join([*keys, "[[runs]]", 'file = "run.csv"', 'sensor = "A1"']))
+    pasted = figures(characterize(tmp_path, "paper-dome", model="atlas").figures)
     for key, value in true_figures(recording.at()).items():
         assert found[key].value == pytest.approx(value, rel=0.02), key
+        assert pasted[key].value == found[key].value, key
 
 
 def test_an_ambient_pressure_that_is_given_answers_the_question_on_it(tmp_path):

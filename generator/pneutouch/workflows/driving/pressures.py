@@ -73,12 +73,11 @@ class ReachCurves:
 
         That of a calibrated sensor is at the age of its calibration."""
         key = BUDGET_KEYS.get(figure, figure)
-        known = [(pressure, entry.known[key]) for pressure, entry in self.budgets if key in entry.known]
+        found = ((pressure, entry.known[key]) for pressure, entry in self.budgets if key in entry.known)
+        known = [(pressure, record.at_calibration or record) for pressure, record in found]
         if not known:
             return np.full(len(self.states), np.nan)
-        at = [pressure for pressure, _ in known]
-        ends = [record.at_calibration or record for _, record in known]
-        width = [0.5 * np.log(end.high / end.low) for end in ends]
+        at, width = np.array([(pressure, 0.5 * np.log(ends.high / ends.low)) for pressure, ends in known]).T
         return np.asarray(np.interp(self.pressures, at, width))
 
     @property
