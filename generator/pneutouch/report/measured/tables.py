@@ -232,10 +232,11 @@ def lists(measured: CampaignReport) -> list[SheetBlock]:
     # The message begins with the file's path, which is printed next to it.
     failures = [[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures]
     wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong, alike ones together."
+    rigid = "A gas volume as if rigid counts the dome's swelling as gas; a calibration finds the dead volume alone."
     alike = ("Why", "Used", "Parts", "First in", "Seconds")
     volumes = ("Sensor", "Figure", "Value", "Standard error", "Unit")
     return [
-        *_listed("Leak and dead volume", injections, volumes, (2, 3)),
+        *_listed("Leak and dead volume", injections, volumes, (2, 3), Text(rigid, "muted")),
         *_listed("Failures", failures, ("File", "Why it is not used")),
         *_listed("Questions", measured.questions, ("File or run", "Question"), (), Text(wrong, "muted")),
         *_listed("Warnings", _warnings(measured), alike, (2, 4), Text(doubtful, "muted")),

@@ -95,8 +95,7 @@ def _of(curve: MeasuredCurve) -> list[Any]:
 def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[InjectionFigure, ...]:
     """Leak rates, and the gas volume of each injection as if the line were rigid.
 
-    An injection into a sensor swells the dome, so that this volume is too large; a calibration takes the dome into
-    account."""
+    An injection swells the dome, so that this volume is too large; a calibration takes the dome into account."""
     rows = [
         InjectionFigure(run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
