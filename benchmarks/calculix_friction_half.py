@@ -1,7 +1,7 @@
 """The press with friction by CalculiX in three dimensions (an optional peer, found on PATH).
 
 ``python -m benchmarks.calculix_friction_half`` presses the paper's dome in FLX9960 centrally with the axisymmetric solid and
-with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json. CalculiX counts slip from the beginning of its computation (`calculix_friction`): the coefficient is one at
+with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json. CalculiX counts slip from the beginning of its computation (tests/mechanics/solid/calculix_presses.py): the coefficient is one at
 which nearly all points slip.
 """
 

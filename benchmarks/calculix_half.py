@@ -11,18 +11,13 @@ pressure that its dome has, and with it the forces. After the press the object m
 
 from __future__ import annotations
 
-import os
-import resource
-import subprocess
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.calculix_sweep import run_calculix
 from benchmarks.scenes import PAPER
-from benchmarks.sway_calculix import HOLE, SPRING, Grid
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.surface import Surface
 from pneutouch.mechanics.solid.elements import cell_shapes, gauss_square
@@ -33,6 +28,45 @@ _RAISED = 2.0e-4
 """How much the second pressure at a depth lies above the first, MPa."""
 _ALONG = 0.1
 """Stiffness of the contact along the surface over that across it."""
+HOLE = np.radians(0.6)
+"""A hole at the pole spares degenerate cells; its area is a ten-thousandth of the base's."""
+SPRING = 300.0
+"""Stiffness of the contact, MPa/mm."""
+
+
+class Grid:
+    """Half a dome of C3D20R cells: ``arc`` from base to pole, ``through`` the wall, ``around`` half the axis.
+
+    ``angles`` of the nodes above the base (rad), those in the middle of cells included; without them the cells are
+    equally long.
+    """
+
+    def __init__(self, arc: int, through: int, around: int, angles: Array | None = None) -> None:
+        self.arc, self.through, self.around = arc, through, around
+        self.number: dict[tuple[int, int, int], int] = {}
+        self.points: list[tuple[float, float, float]] = []
+        angle = np.linspace(0.0, 0.5 * np.pi - HOLE, 2 * arc + 1) if angles is None else angles
+        radius = INNER + WALL * np.linspace(0.0, 1.0, 2 * through + 1)
+        turn = np.linspace(0.0, np.pi, 2 * around + 1)
+        for k, i, j in np.ndindex(turn.size, angle.size, radius.size):
+            if i % 2 + j % 2 + k % 2 > 1:
+                continue
+            r = radius[j] * np.cos(angle[i])
+            self.number[i, j, k] = len(self.points) + 1
+            self.points.append((r * np.cos(turn[k]), r * np.sin(turn[k]), radius[j] * np.sin(angle[i])))
+
+    def cells(self) -> list[tuple[list[int], bool, bool]]:
+        """Nodes of each cell, and whether it has a face inside and one outside."""
+        out = []
+        for k, i, j in np.ndindex(self.around, self.arc, self.through):
+            a, b, c = 2 * i, 2 * j, 2 * k
+            # Seen along the turn: inner low, inner high, outer high, outer low.
+            corners = [(a, b), (a + 2, b), (a + 2, b + 2), (a, b + 2)]
+            sides = [(a + 1, b), (a + 2, b + 1), (a + 1, b + 2), (a, b + 1)]
+            order = [(*p, c) for p in corners] + [(*p, c + 2) for p in corners]
+            order += [(*p, c) for p in sides] + [(*p, c + 2) for p in sides] + [(*p, c + 1) for p in corners]
+            out.append(([self.number[node] for node in order], j == 0, j == self.through - 1))
+        return out
 
 
 class Stop(NamedTuple):
@@ -121,8 +155,13 @@ class HalfPress:
         return raised / total
 
 
-def deck(press: HalfPress, grid: Grid, pressures: Array) -> str:
+def deck(press: HalfPress, grid: Grid, pressures: Array) -> list[str]:
     """The input of CalculiX for gauge pressures (MPa) at the depths of the press."""
+    return [*half_model(press, grid), *_step(press, pressures)]
+
+
+def half_model(press: HalfPress, grid: Grid) -> list[str]:
+    """Dome, object, materials and contact, as lines of a deck."""
     mu, nu = press.wall
     bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
     spring = SPRING * mu / PAPER.wall.shear_modulus
@@ -132,8 +171,7 @@ def deck(press: HalfPress, grid: Grid, pressures: Array) -> str:
     lines += ["*SOLID SECTION,ELSET=WALL,MATERIAL=RUBBER", "*SOLID SECTION,ELSET=BODY,MATERIAL=STIFF"]
     lines += ["*SURFACE INTERACTION,NAME=MEETS", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR", f"{spring:.12g}"]
     lines += ["*FRICTION", f"{press.friction:.12g},{_ALONG * spring:.12g}"] if press.friction else []
-    lines += ["*CONTACT PAIR,INTERACTION=MEETS,TYPE=SURFACE TO SURFACE", "OUT,UNDER"]
-    return "\n".join([*lines, *_step(press, pressures), ""])
+    return [*lines, "*CONTACT PAIR,INTERACTION=MEETS,TYPE=SURFACE TO SURFACE", "OUT,UNDER"]
 
 
 def _step(press: HalfPress, pressures: Array) -> list[str]:
@@ -148,9 +186,9 @@ def _step(press: HalfPress, pressures: Array) -> list[str]:
     last = course[-1][0]
     fixed = "OBJECT,2,2" if press.travels else "OBJECT,1,2"
     return [
-        *_amplitude("DOWN", [(row[0], row[1]) for row in course]),
-        *(_amplitude("ASIDE", [(row[0], row[2]) for row in course]) if press.travels else []),
-        *_amplitude("GAS", [(row[0], row[3]) for row in course]),
+        *amplitude("DOWN", [(row[0], row[1]) for row in course]),
+        *(amplitude("ASIDE", [(row[0], row[2]) for row in course]) if press.travels else []),
+        *amplitude("GAS", [(row[0], row[3]) for row in course]),
         *("*TIME POINTS,NAME=STOPS,GENERATE", f"0.5,{last:.12g},0.5"),
         *("*BOUNDARY", "HELD,1,3", "FLAT,2,2", fixed),
         *("*STEP,NLGEOM,INC=2000", "*STATIC", f"0.1,{last:.12g},1e-5,{press.increment:.12g}"),
@@ -162,7 +200,7 @@ def _step(press: HalfPress, pressures: Array) -> list[str]:
     ]
 
 
-def _amplitude(name: str, course: list[tuple[float, float]]) -> list[str]:
+def amplitude(name: str, course: list[tuple[float, float]]) -> list[str]:
     """An amplitude over the total time."""
     return [f"*AMPLITUDE,NAME={name},TIME=TOTAL TIME", *(f"{time:.12g},{value:.12g}" for time, value in course)]
 
@@ -178,10 +216,10 @@ def _dome(grid: Grid) -> list[str]:
         *(f"{n},{x:.12g},{y:.12g},{z:.12g}" for n, (x, y, z) in enumerate(grid.points, 1)),
         "*ELEMENT,TYPE=C3D20R,ELSET=WALL",
         *(_element(n, nodes) for n, (nodes, _, _) in enumerate(cells, 1)),
-        *_listed("*NSET,NSET=FLAT", flat),
-        *_listed("*NSET,NSET=HELD", held),
-        *_listed("*NSET,NSET=INSIDE", inner),
-        *_listed("*ELSET,ELSET=INNER", [n for n, cell in enumerate(cells, 1) if cell[1]]),
+        *listed("*NSET,NSET=FLAT", flat),
+        *listed("*NSET,NSET=HELD", held),
+        *listed("*NSET,NSET=INSIDE", inner),
+        *listed("*ELSET,ELSET=INNER", [n for n, cell in enumerate(cells, 1) if cell[1]]),
         *("*SURFACE,NAME=OUT", *(f"{n},S5" for n, cell in enumerate(cells, 1) if cell[2])),
     ]
 
@@ -213,7 +251,7 @@ def _element(number: int, nodes: list[int]) -> str:
     return f"{number}," + ",".join(map(str, nodes[:10])) + ",\n" + ",".join(map(str, nodes[10:]))
 
 
-def _listed(head: str, numbers: list[int]) -> list[str]:
+def listed(head: str, numbers: list[int]) -> list[str]:
     """A set under its heading."""
     return [head, *(f"{n}," for n in sorted(numbers))]
 
@@ -225,23 +263,15 @@ class Work(NamedTuple):
     iterations: list[tuple[float, int]]
 
 
-def calculix_stops(text: str, grid: Grid) -> tuple[dict[float, tuple[Array, Array]], Work]:
+def calculix_stops(lines: list[str], grid: Grid) -> tuple[dict[float, tuple[Array, Array]], Work]:
     """Force on the object of the whole dome (3,) and positions of the nodes of the inner wall (the others at rest,
-    (n, 3)) by the time, at every half unit that CalculiX reaches; and the work for all of them."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "press.inp").write_text(text, encoding="ascii")
-        alone, before = {**os.environ, "OMP_NUM_THREADS": "1"}, resource.getrusage(resource.RUSAGE_CHILDREN)
-        with (folder / "out").open("w") as out:
-            subprocess.run(["ccx", "press"], cwd=folder, stdout=out, check=False, env=alone)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
-        status = (folder / "press.sta").read_text(encoding="ascii").splitlines()
+    (n, 3)) by the time, at every half unit that CalculiX reaches on a deck; and the work for all of them."""
+    run = run_calculix(lines)
     # Columns: step, increment, attempt, iterations, total time, step time, increment.
-    counts = [(float(w[4]), int(w[3])) for w in map(str.split, status) if len(w) == 7 and w[0].isdigit()]
-    work = Work(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, counts)
+    counts = [(float(w[4]), int(w[3])) for w in map(str.split, run.status) if len(w) == 7 and w[0].isdigit()]
+    work = Work(run.seconds, counts)
     stops, place, time = dict[float, tuple[Array, Array]](), np.array(grid.points), 0.0
-    for line in lines:
+    for line in run.prints:
         words = line.split()
         if "time" in words:
             time = round(float(words[-1]), 6)

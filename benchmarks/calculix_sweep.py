@@ -11,6 +11,7 @@ import resource
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.membrane import RISING_BRANCH
@@ -48,23 +49,25 @@ def calculix_model(sensor: Sensor, arc: int, through: int) -> list[str]:
     ]
 
 
-def calculix_prints(deck: list[str]) -> list[str]:
-    """Lines that CalculiX prints (its .dat file) on a deck, in one thread."""
+class CalculixRun(NamedTuple):
+    """Lines that CalculiX prints (.dat) and on its increments (.sta), and processor time of the whole process, s."""
+
+    prints: list[str]
+    status: list[str]
+    seconds: float
+
+
+def run_calculix(deck: list[str]) -> CalculixRun:
+    """CalculiX on a deck, in one thread."""
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "press.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
-        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
-        subprocess.run(["ccx", "press"], cwd=folder, capture_output=True, check=False, env=alone)
-        return (folder / "press.dat").read_text(encoding="ascii").splitlines()
-
-
-def _seconds(folder: Path, deck: list[str]) -> float:
-    """Processor time of CalculiX on a deck, the whole process."""
-    (folder / "dome.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(["ccx", "dome"], cwd=folder, capture_output=True, check=False)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        job, alone = Path(name) / "dome", {**os.environ, "OMP_NUM_THREADS": "1"}
+        job.with_suffix(".inp").write_text("\n".join([*deck, ""]), encoding="ascii")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(["ccx", job.name], cwd=name, capture_output=True, check=False, env=alone)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        files = (job.with_suffix(end) for end in (".dat", ".sta"))
+        lines = [path.read_text(encoding="ascii").splitlines() if path.exists() else [] for path in files]
+    return CalculixRun(*lines, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 
 
 def calculix_limit(sensor: Sensor, arc: int, through: int) -> tuple[float, int, float, float]:
@@ -72,10 +75,7 @@ def calculix_limit(sensor: Sensor, arc: int, through: int) -> tuple[float, int, 
     full = RISING_BRANCH[-1, 0] * sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
     step = ["*STEP,NLGEOM,INC=200", "*STATIC", _INCREMENTS, "*DLOAD", f"INNER,P4,{full:.12g}", "*END STEP"]
     model = calculix_model(sensor, arc, through)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        reading = _seconds(folder, model)
-        whole = _seconds(folder, [*model, *step])
-        rows = [line.split() for line in (folder / "dome.sta").read_text(encoding="ascii").splitlines()[2:]]
+    reading, whole = run_calculix(model), run_calculix([*model, *step])
+    rows = [line.split() for line in whole.status[2:]]
     reached = [float(row[4]) for row in rows if "U" not in row[2]]
-    return full * max(reached, default=float("nan")), len(reached), whole, whole - reading
+    return full * max(reached, default=float("nan")), len(reached), whole.seconds, whole.seconds - reading.seconds

@@ -6,8 +6,9 @@ import shutil
 
 import numpy as np
 import pytest
-from benchmarks.calculix_friction import calculix_held, calculix_press, solid_press
 from benchmarks.scenes import paper
+
+from tests.mechanics.solid.calculix_presses import calculix_held, calculix_press, solid_press
 
 pytestmark = [
     pytest.mark.slow,

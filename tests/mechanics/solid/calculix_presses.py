@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.calculix_sweep import calculix_model, calculix_prints
+from benchmarks.calculix_sweep import calculix_model, run_calculix
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.laws import neo_hookean
@@ -95,7 +95,7 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
         "CF",
         "*END STEP",
     ]
-    return _forces(calculix_prints(deck), depths)
+    return _forces(run_calculix(deck).prints, depths)
 
 
 def _forces(lines: list[str], depths: Array) -> Array:
@@ -153,7 +153,7 @@ def _held_forces(deck: list[str], count: int) -> Array:
     """Vertical force of the whole turn at the ends of the steps of a deck, the first of none."""
     out = np.full(count + 1, np.nan)
     out[0] = 0.0
-    lines = calculix_prints(deck)
+    lines = run_calculix(deck).prints
     for k, line in enumerate(lines):
         if line.startswith(" total force"):
             step = round(count * float(line.split()[-1]))
