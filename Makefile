@@ -40,8 +40,8 @@ review: $(VENV)/.dev
 
 # Times of single jobs over those of others in the same run; and of the commands over the import of their libraries.
 ratios: $(VENV)/.dev
-	$(BIN)/python -m benchmarks.ratios
-	$(BIN)/python -m benchmarks.ratios start-up
+	$(BIN)/python -m tests.ratios
+	$(BIN)/python -m tests.ratios start-up
 
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal

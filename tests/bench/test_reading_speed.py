@@ -1,4 +1,4 @@
-"""Long files: how much memory they take. Their time: ``benchmarks.ratios``."""
+"""Long files: how much memory they take. Their time: ``tests.ratios``."""
 
 from __future__ import annotations
 

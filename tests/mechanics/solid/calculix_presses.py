@@ -14,8 +14,8 @@ contact goes down with the plate, and from the step after it first touched keeps
 from __future__ import annotations
 
 import numpy as np
-
 from benchmarks.calculix_sweep import calculix_model, run_calculix
+
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.laws import neo_hookean

@@ -1,4 +1,4 @@
-"""Large patterns: closed, exact, and of how many triangles. Their times: ``benchmarks.ratios``."""
+"""Large patterns: closed, exact, and of how many triangles. Their times: ``tests.ratios``."""
 
 from __future__ import annotations
 

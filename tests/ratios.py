@@ -1,4 +1,4 @@
-"""Processor time of single jobs over that of something else done in the same run: ``python -m benchmarks.ratios [NAME ...]``.
+"""Processor time of single jobs over that of something else done in the same run: ``python -m tests.ratios [NAME ...]``.
 
 Work and measure run in turn, each once for the caches and then three times; the least of each is compared. So a ratio
 holds on a slow or a loaded machine too. Exits 1 where one is above its bound. With ``start-up [RUNS]`` the
@@ -24,8 +24,9 @@ from contextlib import contextmanager  # noqa: E402
 from functools import partial  # noqa: E402
 from pathlib import Path  # noqa: E402
 
-from benchmarks import ratio_cases as cases  # noqa: E402
 from benchmarks.store import timed  # noqa: E402
+
+from tests import ratio_cases as cases  # noqa: E402
 
 RUNS = 3
 RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
@@ -123,16 +124,17 @@ def start_up_table(seconds: dict[str, float]) -> str:
 def main(names: list[str]) -> int:
     """Print one line a ratio, or the table of the commands; 1 where a ratio is above its bound."""
     if names[:1] == ["start-up"]:
-        print(start_up_table(start_up(int(names[1]) if len(names) > 1 else 7)))
+        sys.stdout.write(f"{start_up_table(start_up(int(names[1]) if len(names) > 1 else 7))}\n")
         return 0
     worst = 0
-    print(f"{'':58}{'s':>9}{'over s':>9}{'ratio':>9}{'at most':>9}")
+    sys.stdout.write(f"{'':58}{'s':>9}{'over s':>9}{'ratio':>9}{'at most':>9}\n")
     for name, (make, most) in RATIOS.items():
         if names and not any(part in name for part in names):
             continue
         taken, base = measure(make)
         worst |= taken > most * base
-        print(f"{name:58}{taken:9.4f}{base:9.4f}{taken / base:9.3g}{most:9.3g}", flush=True)
+        sys.stdout.write(f"{name:58}{taken:9.4f}{base:9.4f}{taken / base:9.3g}{most:9.3g}\n")
+        sys.stdout.flush()
     return worst
 
 

@@ -1,4 +1,4 @@
-"""What ``benchmarks.ratios`` measures: for each ratio the work, and the job that its time is divided by."""
+"""What ``tests.ratios`` measures: for each ratio the work, and the job that its time is divided by."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-
 from benchmarks.store import LIBRARY, ROOT
+
 from pneutouch.catalogue import load_scene
 from pneutouch.units import KPA
 
@@ -18,11 +18,10 @@ Pair = tuple[Callable[[], object], Callable[[], object]]
 
 
 def check_of_a_sensor(folder: Path) -> Pair:
-    from tests.parts.overlap import overlap_volume
-
     from pneutouch.evaluation.subject import subject_of
     from pneutouch.parts import assemble
     from pneutouch.printability import check
+    from tests.parts.overlap import overlap_volume
 
     scene = load_scene("stiff-dome", None, LIBRARY)
     subject = subject_of(assemble(scene))
@@ -47,11 +46,10 @@ def trays(folder: Path) -> Pair:
 
 
 def struts(folder: Path) -> Pair:
-    from tests.parts.specimen.shapes import STEP
-    from tests.parts.specimen.test_speed import batch_of_hulls
-
     from pneutouch.parts.specimen import Box, complement
     from pneutouch.parts.specimen.struts import Lattice, fill
+    from tests.parts.specimen.shapes import STEP
+    from tests.parts.specimen.test_speed import batch_of_hulls
 
     counts = (10, 4, 4)
     lattice, box = Lattice.of("bcc", 4.0, 0.35, STEP), Box((0.0, 0.0, 0.0), tuple(4.0 * n for n in counts))
@@ -68,9 +66,9 @@ def _batch(bodies: list, subtract: bool = False) -> int:
 
 def bars(folder: Path) -> Pair:
     from manifold3d import Manifold
-    from tests.parts.specimen.shapes import bars_by_hand
 
     from pneutouch.parts.specimen import Box, complement
+    from tests.parts.specimen.shapes import bars_by_hand
 
     block = Box((0.0, 0.0, 0.0), (30_000.0, 20.0, 8.0))
     made = bars_by_hand(10_000, 3.0, 1.5, Box((0.0, 0.0, 7.0), (30_000.0, 20.0, 8.0)))
@@ -80,9 +78,8 @@ def bars(folder: Path) -> Pair:
 
 
 def family(folder: Path) -> Pair:
-    from tests.parts.specimen.shapes import bars_by_hand, context, drawn
-
     from pneutouch.parts.specimen import Box
+    from tests.parts.specimen.shapes import bars_by_hand, context, drawn
 
     box = Box((0.0, 0.0, 7.0), (1000.0, 20.0, 8.0))
     return (
@@ -100,11 +97,10 @@ def wavelets(folder: Path) -> Pair:
 
 
 def budgets(folder: Path) -> Pair:
-    from tests.mechanics.uncertainty.designs import budget_for, materials
-
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.paper_sensor import material_sensor
+    from tests.mechanics.uncertainty.designs import budget_for, materials
 
     batch = batch_of(material_sensor(materials(LIBRARY)["TangoPlus"]), np.linspace(0.0, 0.015, 200).tolist())
     batch = replace(batch, wall_thickness=np.linspace(1.0, 2.0, 200))
@@ -112,11 +108,10 @@ def budgets(folder: Path) -> Pair:
 
 
 def relaxation_and_loops(folder: Path) -> Pair:
-    from tests.mechanics.viscous.test_follow import SENSOR, A
-
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.viscous.runs import loop, relaxation
+    from tests.mechanics.viscous.test_follow import SENSOR, A
 
     def work() -> None:
         relaxation(SENSOR, [A], [0.0], 4.625, 5.0)
@@ -129,6 +124,7 @@ def relaxation_and_loops(folder: Path) -> Pair:
 def _one_of_the_solid() -> Callable[[], object]:
     """The paper's sensor at one pressure, each time with another dead volume: mesh, inflation and press."""
     from benchmarks.scenes import PAPER
+
     from pneutouch.mechanics import predict
 
     sensors = (PAPER.replace(dead_volume=1e-6 * number) for number in itertools.count(1))
@@ -146,23 +142,22 @@ def order_zero(folder: Path, friction: float = 0.0) -> Pair:
 
 
 def atlas_batch(folder: Path) -> Pair:
-    from tests.mechanics.atlas.sampled import random_batch
-
     from pneutouch.mechanics.atlas.respond import respond
+    from tests.mechanics.atlas.sampled import random_batch
 
     return partial(respond, random_batch(1000, 1)), _one_of_the_solid()
 
 
 def atlas_single(folder: Path) -> Pair:
-    from tests.mechanics.atlas.sampled import random_batch
-
     from pneutouch.mechanics.atlas.respond import respond
+    from tests.mechanics.atlas.sampled import random_batch
 
     return partial(respond, random_batch(1, 1)), _one_of_the_solid()
 
 
 def sway(folder: Path) -> Pair:
     from benchmarks.scenes import PAPER
+
     from pneutouch.mechanics import predict
 
     def solved(waves: int) -> Callable[[], object]:
@@ -173,12 +168,12 @@ def sway(folder: Path) -> Pair:
 
 def reading(folder: Path) -> Pair:
     import pandas as pd
-    from tests.bench.test_reading_speed import long_file
 
     from pneutouch.bench.curve import curve_of
     from pneutouch.bench.reading import PLATE, read_blocks
     from pneutouch.bench.source import identify
     from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
+    from tests.bench.test_reading_speed import long_file
 
     path = long_file(folder / "long.csv", 15.0)
     assert path.stat().st_size > 90e6
@@ -189,14 +184,13 @@ def reading(folder: Path) -> Pair:
 
 
 def fit_of_curves(folder: Path) -> Pair:
-    from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
-    from tests.bench.calibrate.test_fit import TRUTH
-
     from pneutouch.bench.calibrate.fit import fit
     from pneutouch.bench.calibrate.observations import Observations
     from pneutouch.bench.calibrate.parameters import NAMES
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
+    from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
+    from tests.bench.calibrate.test_fit import TRUTH
 
     pressures = np.linspace(0, 22, 10)
     seen = curves(other(**TRUTH), pressures, 4, np.random.default_rng(1))
