@@ -1,12 +1,11 @@
-"""The cells of the paper's Table S1 under what the paper leaves open: friction, base, dead volume and fitted range.
+"""The cells of the paper's Table S1 as friction, base, dead volume and fitted range change, one at a time.
 
-``python -m benchmarks.table_s1`` (some ten minutes of processor time) writes docs/background/table-s1.json; with
-``stored`` it reduces the stored cells anew.
+``python -m benchmarks.table_s1`` (two minutes of processor time) writes docs/background/table-s1.json; with ``stored`` it
+reduces the stored cells anew. `benchmarks.protocol` varies them together, with more that the paper leaves open.
 """
 
 from __future__ import annotations
 
-import itertools
 import os
 import sys
 from collections.abc import Iterable
@@ -28,11 +27,6 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
-
-FRICTIONS = (0.0, 0.3, 0.6, 1.0, np.inf)
-RIMS = ("base plane", "as printed", "no base")
-DEAD_VOLUMES_ML = (0.0, 0.2)
-RANGES = ("gauge", "depth")
 
 
 class Assumptions(NamedTuple):
@@ -64,7 +58,19 @@ class Assumptions(NamedTuple):
         return ", ".join(parts) or "default"
 
 
-ALL = tuple(Assumptions(*parts) for parts in itertools.product(FRICTIONS, RIMS, DEAD_VOLUMES_ML, RANGES))
+FACTORS = {
+    "friction 0.3": Assumptions(friction=0.3),
+    "friction 0.6": Assumptions(friction=0.6),
+    "friction 1": Assumptions(friction=1.0),
+    "grip": Assumptions(friction=np.inf),
+    "rim as printed": Assumptions(rim="as printed"),
+    "no base": Assumptions(rim="no base"),
+    "dead volume 0.2 mL": Assumptions(dead_volume_mL=0.2),
+    "range to depth": Assumptions(range="depth"),
+}
+"""One assumption changed at a time."""
+
+ALL = (Assumptions(), *FACTORS.values())
 
 
 @dataclass(frozen=True)
@@ -78,21 +84,6 @@ class CellRow:
     repeatability: float
     sensitivity: dict[Assumptions, float]
     ends: dict[Assumptions, tuple[float, str]]
-
-
-FACTORS = {
-    "friction 0.3": Assumptions(friction=0.3),
-    "friction 0.6": Assumptions(friction=0.6),
-    "friction 1": Assumptions(friction=1.0),
-    "grip": Assumptions(friction=np.inf),
-    "rim as printed": Assumptions(rim="as printed"),
-    "no base": Assumptions(rim="no base"),
-    "dead volume 0.2 mL": Assumptions(dead_volume_mL=0.2),
-    "range to depth": Assumptions(range="depth"),
-}
-"""One assumption changed at a time."""
-
-SHOWN = 12
 
 
 def scene(sensor: Sensor, assumed: Assumptions) -> Sensor:
@@ -150,33 +141,6 @@ def errors(rows: list[CellRow], assumed: Assumptions) -> Array:
     return np.array([row.sensitivity[assumed] / row.measured - 1 for row in rows])
 
 
-def root_mean_square(values: Array) -> float:
-    """Infinite where a cell has no figure: a set of assumptions must answer for the whole table."""
-    return float(np.sqrt(np.mean(values**2))) if np.isfinite(values).all() else float("inf")
-
-
-def ranked(rows: list[CellRow]) -> list[Assumptions]:
-    """All sets of assumptions, the one with the least root mean square error first."""
-    return sorted(rows[0].sensitivity, key=lambda assumed: root_mean_square(errors(rows, assumed)))
-
-
-def within(rows: list[CellRow], assumed: Assumptions) -> int:
-    """How many cells are met within twice their repeatability."""
-    return sum(abs(row.sensitivity[assumed] - row.measured) <= 2 * row.repeatability for row in rows)
-
-
-def spread(row: CellRow) -> tuple[float, float]:
-    """Least and greatest sensitivity of a cell over all assumptions, kPa/N."""
-    values = np.array(list(row.sensitivity.values()))
-    return float(np.nanmin(values)), float(np.nanmax(values))
-
-
-def open_share(rows: list[CellRow]) -> float:
-    """Standard deviation of the logarithm of a cell over all assumptions, each equally likely; root mean square over the cells."""
-    table = np.array([np.log1p(errors(rows, assumed)) for assumed in ranked(rows)])
-    return root_mean_square(np.nanstd(table, axis=0, ddof=1))
-
-
 def raw(rows: list[CellRow]) -> list[dict[str, Any]]:
     """The rows as JSON: sensitivities in kPa/N and ends in mm, in the order of `ALL`."""
     return [
@@ -215,45 +179,24 @@ def read(cells: list[dict[str, Any]]) -> list[CellRow]:
 
 
 def reduced(rows: list[CellRow]) -> dict[str, Any]:
-    """What the page states of the cells: errors by friction, effects of each assumption, and the nearest combinations."""
-    twelve = [row for row in rows if row.material != OTHER_SOURCE]
-    order, default = ranked(twelve), Assumptions()
-    inside = [low <= row.measured <= high for row, (low, high) in ((row, spread(row)) for row in twelve)]
-    grips = Assumptions(friction=np.inf)
+    """What the page states of the cells: errors by friction, and effects of each assumption."""
+    twelve, default = [row for row in rows if row.material != OTHER_SOURCE], Assumptions()
+    frictions = [assumed for assumed in ALL if assumed == Assumptions(assumed.friction)]
     return {
-        "rms": root_mean_square(errors(twelve, default)),
-        "open_share": open_share(twelve),
-        "inside": sum(inside),
-        "most_met": max(within(twelve, assumed) for assumed in order),
-        "combinations": len(order),
-        "factors": list(FACTORS),
+        "rms": float(np.sqrt(np.mean(errors(twelve, default) ** 2))),
         "rows": [
             {
                 "material": row.material,
                 "driving_pressure_kPa": row.pressure_kPa,
                 "measured_kPa_per_N": row.measured,
                 "default_kPa_per_N": row.sensitivity[default],
-                "effects": [_number(row.sensitivity[a] / row.sensitivity[default] - 1) for a in FACTORS.values()],
-                "errors": [_number(row.sensitivity[Assumptions(f)] / row.measured - 1) for f in FRICTIONS],
-                "ends": [row.ends[default], row.ends[grips]],
-                "span_kPa_per_N": spread(row),
+                "effects": [row.sensitivity[a] / row.sensitivity[default] - 1 for a in FACTORS.values()],
+                "errors": [row.sensitivity[a] / row.measured - 1 for a in frictions],
+                "ends": [row.ends[default], row.ends[FACTORS["grip"]]],
             }
             for row in rows
         ],
-        "nearest": [{"rank": k + 1, **_fit(twelve, order[k])} for k in range(SHOWN)],
-        "default": {"rank": order.index(default) + 1, **_fit(twelve, default)},
     }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
-
-
-def _fit(rows: list[CellRow], assumed: Assumptions) -> dict[str, Any]:
-    """How near the cells come under assumptions."""
-    off = np.abs(errors(rows, assumed))
-    worst = {"median": float(np.nanmedian(off)), "rms": root_mean_square(off), "worst": float(np.nanmax(off))}
-    return {"combination": assumed.change(), **worst, "met": within(rows, assumed)}
 
 
 def main(*words: str) -> None:

@@ -1,4 +1,4 @@
-"""Charts of presses, drawn from the stored measurements: friction, Table S1, sway and the atlas."""
+"""Charts of presses, drawn from the stored measurements: friction, Table S1 and its protocol, sway and the atlas."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _places(frictions: tuple[str, ...]) -> list[float]:
 
 
 def table_s1() -> str:
-    """Every cell of Table S1 by friction, with the span of all assumptions; a panel for each driving pressure."""
+    """Every cell of Table S1 by friction, with the span of all single changes; a panel for each driving pressure."""
     rows = stored("table-s1")["cells"]
     pressures = sorted({row["driving_pressure_kPa"] for row in rows})
     with figure(175.0, 80.0) as drawn:
@@ -97,7 +97,7 @@ def _cells_panel(ax: Axes, rows: Rows, pressure: float) -> None:
             ec="none",
             alpha=0.7,
             zorder=1,
-            label=_once(k, "all combinations"),
+            label=_once(k, "one change"),
         )
         for friction, mark, place in zip(FRICTIONS, _MARKS, np.linspace(-0.5, 0.5, len(FRICTIONS)), strict=True):
             label = friction if friction == "grip" else f"friction {friction}"
@@ -112,6 +112,50 @@ def _cells_panel(ax: Axes, rows: Rows, pressure: float) -> None:
 
 def _once(k: int, label: str) -> str | None:
     return label if k == 0 else None
+
+
+def protocol() -> str:
+    """Table S1 and its ratios beside those foretold for each resin from the other six; priors and posteriors."""
+    found = stored("protocol")["summary"]
+    with figure(178.0, 150.0) as drawn:
+        axes = drawn.subplot_mosaic([[0, 1, 2], [3, 3, 3]], height_ratios=(1.0, 1.6))
+        titles = ("S at 0 kPa  (kPa/N)", "S at 22 kPa  (kPa/N)", "S(22) / S(0)")
+        for k, title in enumerate(titles):
+            _foretold_panel(axes[k], found, k)
+            axes[k].set(title=title, ylim=(0.0 if k < 2 else 0.5, None))
+        _unknowns_panel(axes[3], found["unknowns"])
+        labels = [axes[k].get_legend_handles_labels() for k in (0, 3)]
+        drawn.legend(*(sum(parts, []) for parts in zip(*labels, strict=True)), loc="outside upper center", ncols=5)
+        return svg(drawn)
+
+
+def _foretold_panel(ax: Axes, found: dict[str, Any], k: int) -> None:
+    measured = np.array(found["measured"])[:, k]
+    low, middle, high = (np.array(found["left_out"][key])[:, k] for key in ("low", "middle", "high"))
+    errors = np.array(found["default"]["cells"])
+    off = errors[:, k] if k < 2 else np.array(found["default"]["ratios"])
+    at = np.arange(measured.size)
+    ax.bar(at, high - low, bottom=low, width=0.6, fc=FAINT, ec="none", label="foretold from the others, 90 %")
+    ax.plot(at, middle, "_", color=INK, ms=8, ls="none")
+    ax.plot(at, measured * (1.0 + off), "o", color=INK, mfc="white", mew=0.7, ms=3.8, ls="none", label="default")
+    ax.plot(at, measured, "D", color=ACCENT, ms=4.2, ls="none", label="measured")
+    ax.set_xticks(at, [title.removesuffix("-DM") for title in found["resins"]], rotation=40, ha="right")
+
+
+def _unknowns_panel(ax: Axes, rows: Rows) -> None:
+    """Intervals of 90 % as shares of the prior's; ends of the prior as text."""
+    for k, row in enumerate(rows):
+        prior, posterior = (np.array(row[key]) for key in ("prior", "posterior"))
+        if row["logarithmic"]:
+            prior, posterior = np.log(prior), np.log(posterior)
+        low, middle, high = (posterior - prior[0]) / (prior[2] - prior[0])
+        ax.plot([0.0, 1.0], [-k, -k], color=FAINT, lw=5.0, solid_capstyle="butt", label=_once(k, "prior, 90 %"))
+        ax.plot([low, high], [-k, -k], color=ACCENT, lw=1.8, label=_once(k, "posterior, 90 %"))
+        ax.plot(middle, -k, "o", color=ACCENT, ms=3.8, ls="none")
+        for place, value, side in ((-0.06, row["prior"][0], "right"), (1.06, row["prior"][2], "left")):
+            ax.text(place, -k, f"{value:.3g}", ha=side, va="center", fontsize=6.5, color=MUTED)
+    ax.set_yticks([-k for k in range(len(rows))], [row["name"] for row in rows], fontsize=6.5)
+    ax.set(xlim=(-0.2, 1.2), xticks=[], ylim=(0.3 - len(rows), 0.7))
 
 
 def sway() -> str:
@@ -182,4 +226,10 @@ def greatest(x: Array, y: Array, error: Array, x_edges: Array, y_edges: Array) -
     return np.where(found < 0.0, np.nan, found)
 
 
-CHARTS: dict[str, Callable[[], str]] = {"friction": friction, "table-s1": table_s1, "sway": sway, "atlas": atlas}
+CHARTS: dict[str, Callable[[], str]] = {
+    "friction": friction,
+    "table-s1": table_s1,
+    "protocol": protocol,
+    "sway": sway,
+    "atlas": atlas,
+}
