@@ -25,7 +25,7 @@ def curve(force, rise, end=np.nan, growth=0.0):
         return np.concatenate([np.log(force), np.log(rise), [np.log(end - 5.0), np.log(growth)]])[None, :]
 
 
-BENT = curve(3.0 * NODE_MM**1.5, 4.0 * NODE_MM**2, growth=0.6)
+BENT = curve(3.0 * NODE_MM**1.5, 3.9 * NODE_MM**2, growth=0.6)
 
 
 def slope(travel, force, rise):
@@ -40,11 +40,11 @@ def test_a_straight_curve_gives_its_slope_whatever_the_rig_does():
 
 def test_steps_end_at_the_force_that_the_rig_bears_at_the_buckling_and_at_the_gauge():
     def expected(last):
-        return slope(STEP * np.arange(last + 1), lambda z: 3.0 * z**1.5, lambda z: 4.0 * z**2)
+        return slope(STEP * np.arange(last + 1), lambda z: 3.0 * z**1.5, lambda z: 3.9 * z**2)
 
-    assert sensitivities(BENT, 0.0, rig()) == pytest.approx(expected(10), rel=1e-9)  # 4 z^2 is 100 kPa at 5 mm.
+    assert sensitivities(BENT, 0.0, rig()) == pytest.approx(expected(10), rel=1e-9)  # 3.9 z^2 is 97.5 kPa at 5 mm.
     assert sensitivities(BENT, 40.0, rig()) == pytest.approx(expected(7), rel=1e-9)
-    assert sensitivities(BENT, 0.0, rig(limit=3.0 * 4.0**1.5)) == pytest.approx(expected(8), rel=1e-9)
+    assert sensitivities(BENT, 0.0, rig(limit=24.1)) == pytest.approx(expected(8), rel=1e-9)  # 24 N at 4 mm.
     buckles = np.array(BENT)
     buckles[0, 2 * NODES] = np.log(0.001)
     buckles[0, NODES : 2 * NODES] -= np.log(2.0)
@@ -52,7 +52,7 @@ def test_steps_end_at_the_force_that_the_rig_bears_at_the_buckling_and_at_the_ga
 
 
 def test_an_offset_loses_travel_growth_adds_it_and_a_force_that_relaxes_divides():
-    lost = slope(np.append(0.0, STEP * np.arange(1, 11) - 0.2), lambda z: 3.0 * z**1.5, lambda z: 4.0 * z**2)
+    lost = slope(np.append(0.0, STEP * np.arange(1, 11) - 0.2), lambda z: 3.0 * z**1.5, lambda z: 3.9 * z**2)
     assert sensitivities(BENT, 0.0, rig(offset=0.2)) == pytest.approx(lost, rel=0.01)
     assert sensitivities(BENT, 0.0, rig(offset=0.2)) < sensitivities(BENT, 0.0, rig())
     assert sensitivities(BENT, 22.0, rig(grown=1.0)) > sensitivities(BENT, 22.0, rig())
@@ -60,7 +60,7 @@ def test_an_offset_loses_travel_growth_adds_it_and_a_force_that_relaxes_divides(
     assert 1.2 * sensitivities(BENT, 0.0, rig(hold=1.2)) == pytest.approx(sensitivities(BENT, 0.0, rig()), rel=1e-12)
 
 
-@pytest.mark.parametrize("rim", RIMS)
+@pytest.mark.parametrize("rim", [RIMS[0], pytest.param(RIMS[1], marks=pytest.mark.slow)])
 def test_a_stored_press_is_what_the_solid_gives_today(rim):
     # The softest of the places held out: the quickest.
     k = POINTS + int(np.argmin(places()[POINTS : POINTS + HELD_OUT, 0] + 9.0 * (places()[POINTS:, 0] < 0.11)))
@@ -116,6 +116,7 @@ def test_the_summary_is_that_of_the_stored_draws():
     assert same(json.loads(json.dumps(fit.reduced(KNOWN))), KNOWN["summary"])
 
 
+@pytest.mark.slow
 def test_a_posterior_drawn_anew_is_the_stored_one():
     name = "moduli in their ranges"
     found = fit.fitted(name, seed=3)

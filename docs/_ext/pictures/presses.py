@@ -125,7 +125,8 @@ def protocol() -> str:
             axes[k].set(title=title, ylim=(0.0 if k < 2 else 0.5, None))
         _unknowns_panel(axes[3], found["unknowns"])
         labels = [axes[k].get_legend_handles_labels() for k in (0, 3)]
-        drawn.legend(*(sum(parts, []) for parts in zip(*labels, strict=True)), loc="outside upper center", ncols=5)
+        handles, texts = ([*one, *other] for one, other in zip(*labels, strict=True))
+        drawn.legend(handles, texts, loc="outside upper center", ncols=5)
         return svg(drawn)
 
 
