@@ -10,7 +10,9 @@ from pneutouch.catalogue import load_scene
 from pneutouch.catalogue.library import PACKAGE
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.subject import subject_of
+from pneutouch.output.new import PRINTED_PORT
 from pneutouch.parts import assemble
+from pneutouch.parts.port import port_shape
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.view import PrintView
 
@@ -85,3 +87,21 @@ def test_a_port_of_the_user_that_is_not_valid_is_not_proposed_and_stops_nothing(
     (tmp_path / "parts/ports").mkdir(parents=True)
     (tmp_path / "parts/ports/a-bad-one.toml").write_text('family = "barb"\n')
     assert "a-bad-one" not in walls({})
+
+
+MACHINES = {"abs-filament": "ABS", "sla-resin": "ClearResin", "objet260-connex": "VeroClear", "j735": "VeroClear"}
+
+
+@pytest.mark.parametrize("profile", MACHINES)
+def test_the_port_of_a_new_design_is_large_enough_for_every_printer(profile):
+    made = {"print.connector_profile": profile, "connector.material": MACHINES[profile]}
+    assert not sizes("paper-dome", {**made, "connector.port": PRINTED_PORT})
+
+
+@pytest.mark.parametrize("port", ["barb-4x2.5", "barb-3x2", "barb-6x4"])
+def test_the_least_wall_of_a_barb_is_that_of_the_drawing(port):
+    scene = load_scene("paper-dome", {"connector.port": port})
+    drawn = port_shape(scene.port, scene.tube, scene.hole_undersize)
+    (tip, _), _ = drawn.outside[0]
+    least = next(size for rule, size in sizes("paper-dome", {"connector.port": port}) if rule == "walls")
+    assert least == pytest.approx(tip - drawn.hollow[0][0], abs=0.01)

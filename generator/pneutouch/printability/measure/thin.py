@@ -52,7 +52,8 @@ _PER_GROUP = 48
 class ThinPlace:
     """One thin place: ``size`` at its narrowest, mm, at ``where``; ``length`` along it (mm) for pins and holes, else 0.
 
-    ``turn`` is the greatest turn (radians) between two faces of the curves around it.
+    ``turn`` is the greatest turn (radians) between two faces of the curves around it. Of a taper ``size`` is measured
+    `BLUNT` from its thin end, where its thickness is ``end``; None for places of other kinds.
     """
 
     kind: FeatureKind
@@ -60,6 +61,7 @@ class ThinPlace:
     where: Point3
     length: float
     turn: float = 0.0
+    end: float | None = None
 
 
 def thin_places(
@@ -127,7 +129,8 @@ def _place(side: Side, some: _Sized, faces: int) -> ThinPlace:
     narrow = some.round & (some.lengths <= 1.1 * size)
     if not narrow.any():
         first = int(some.tapered.argmin())
-        return ThinPlace("wall" if side == "inside" else "gap", float(some.tapered[first]), _spot(some, first), 0.0)
+        kind: FeatureKind = "wall" if side == "inside" else "gap"
+        return ThinPlace(kind, float(some.tapered[first]), _spot(some, first), 0.0, end=float(some.lengths[first]))
     along = _length(some, int(np.flatnonzero(narrow)[0]), faces)
     if side == "inside":
         return ThinPlace("pin", size, where, along)
