@@ -180,6 +180,11 @@ def test_of_several_profiles_that_run_a_resin_the_first_is_stated_and_the_others
     assert f"profile {taken} (" in done.stderr
     assert f"runs Agilus30; so does {other}, set by print.profile\n" in done.stderr
     assert command("new", "plain").stderr == "next: pneutouch check plain\n"
+    assert (
+        written(tmp_path, "plain")["connector"]["port"]
+        == written(tmp_path, "mine")["connector"]["port"]
+        != "barb-4x2.5"
+    )
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,10 @@ from pneutouch.units import KPA
 PROFILES = ("printers", "gauges", "materials")
 """Kinds of files, besides designs, that a laboratory may have of its own."""
 
+PRINTED_PORT = "push-in-4"
+"""Port of a new design: `check` finds nothing on it with filament, stereolithography and PolyJet, and it needs no tap.
+The default of the design file is the paper's barb, whose tip and bore are too thin for some of them."""
+
 _DRAWN = ("designs", "specimens")
 """Kinds of files that describe printed things."""
 
@@ -52,13 +56,14 @@ def new_design(
     With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
     returned with the path (else None). Raises InputError if no profile does.
     """
+    note = f"Every key may be left out; shown are the defaults, but port {PRINTED_PORT}, which every printer makes"
     if process is None and material is None:
-        return write_design(name, folder, design_template(name)), None
+        text = design_template(name, {"connector": {"port": PRINTED_PORT}}, f"{note}.")
+        return write_design(name, folder, text), None
 
     library = Library.default()
     values = process_values(process, material, library)
-    note = "Every key may be left out; shown are the defaults but for what process and resin need."
-    path = write_design(name, folder, design_template(name, values, note))
+    path = write_design(name, folder, design_template(name, values, f"{note}, and what process and resin need."))
     return path, profile_note(values, library, process=process, material=material)
 
 
@@ -230,8 +235,9 @@ def process_values(process: str | None, material: str | None, library: Library) 
         raise _no_profile(process, material, resin, library)
     profile, chosen = next(iter(runs.items()))
     values: dict[str, dict[str, Any]] = {"membrane": {"material": chosen}, "print": {"profile": profile}}
+    values["connector"] = {"port": PRINTED_PORT}
     if printers[profile].is_casting:
-        values |= {"connector": {"seat": CAST_SEAT}, "mould": {}}
+        values["connector"]["seat"], values["mould"] = CAST_SEAT, {}
     pressures_kPa = _pressures_kPa(library.load("materials", chosen), default)
     if pressures_kPa is not None:
         values["pneumatics"] = {"driving_pressures_kPa": pressures_kPa}
