@@ -1,11 +1,14 @@
 """How a sensor is made: a cast one by weighing, pouring and curing, a printed one as before."""
 
+import re
+
 import pytest
 
-from pneutouch.catalogue import load_scene
+from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts import assemble
 from pneutouch.parts.mould import silicone_batch
 from pneutouch.report.print_sheet import making, making_title
+from tests.conftest import ROOT
 
 
 def steps(name, changes=None):
@@ -19,7 +22,9 @@ def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
     assert pour.parts_g == pytest.approx((pour.mass_g / 2, pour.mass_g / 2))
     text = " ".join(lines)
     assert f"{pour.parts_g[0]:.2f} g of part A and {pour.parts_g[1]:.2f} g of part B" in text
-    order = [text.index(word) for word in ("Release agent", "Weigh", "Degas", "Pour", "Cure", "Demould", "screws")]
+    order = [
+        text.index(word) for word in ("Release agent", "Weigh", "Degas", "Pour", "Curing: 4 h", "Demould", "screws")
+    ]
     assert order == sorted(order)
     assert "latex" in text and "water jet" not in text and "Aim the jet" not in text and "support" not in lines[0]
     assert making_title(pour) == "How to make it"
@@ -51,3 +56,78 @@ def test_a_printed_dome_has_nothing_to_pour():
 def test_the_glue_is_that_of_the_pair_of_materials(name, changes, glue):
     _, lines = steps(name, changes)
     assert f"fill the gap with {glue};" in " ".join(lines)
+
+
+SOFT = """title = "Own elastomer"
+code = "OE"
+kind = "elastomer"
+base_resins = ["OwnSoft"]
+colour = "#7FB4D6"
+density_g_per_cm3 = { value = 1.1, source = "made up for a test" }
+poisson_ratio = { value = 0.49, source = "made up for a test" }
+shear_modulus_MPa = { value = 0.7, source = "made up for a test" }
+"""
+
+SHIPPED = {"filament": "abs-filament", "resin": "sla-resin"}
+
+POLYJET = re.compile(r"\bjets?\b|gloss|matte|GrabCAD|support gel|SUP70|lamps", re.IGNORECASE)
+"""Words that hold for PolyJet alone."""
+
+
+def printed(process, folder, changes=None, facts=""):
+    """Steps of a dome and a connector, both made by a process on a profile of the laboratory's own."""
+    materials = folder / "printprofiles" / "materials"
+    materials.mkdir(parents=True)
+    (materials / "OwnSoft.toml").write_text(SOFT + facts)
+    text = (ROOT / "printprofiles" / f"{SHIPPED[process]}.toml").read_text()
+    rigid = "ABS" if process == "filament" else "ClearResin"
+    (folder / "printprofiles" / "own.toml").write_text(text.replace(f'["{rigid}"]', f'["OwnSoft", "{rigid}"]'))
+    made = {"print.profile": "own", "print.connector_profile": "own", "connector.material": rigid}
+    made = {**made, "membrane.material": "OwnSoft", **(changes or {})}
+    return making(load_scene("paper-dome", made, Library((folder, ROOT))))
+
+
+@pytest.mark.parametrize("orientation", ["dome-up", "dome-down"])
+@pytest.mark.parametrize("seat", ["glued-flange", "clamped-flange-M2"])
+@pytest.mark.parametrize("process", SHIPPED)
+def test_a_part_is_told_what_its_own_process_asks_for(tmp_path, process, seat, orientation):
+    lines = printed(process, tmp_path, {"connector.seat": seat, "print.orientation": orientation})
+    assert not [line for line in lines if POLYJET.search(line)]
+    for part in ("Membrane", "Connector"):
+        starts = [f"{part}:", f"{part} support:", f"{part}, cleaning:", f"{part}, curing:"]
+        places = [next(k for k, line in enumerate(lines) if line.startswith(start)) for start in starts]
+        # A resin is washed before its supports come off, and cured last.
+        order = places if process == "filament" else [places[k] for k in (0, 2, 1, 3)]
+        assert order == sorted(order)
+    tight = next(line for line in lines if line.startswith("Airtightness:"))
+    assert ("under water" in tight) == (process == "filament")
+
+
+def test_polyjet_keeps_its_jet_and_its_face_without_support():
+    _, lines = steps("paper-dome", {"connector.material": "VeroClear", "print.connector_profile": "objet260-connex"})
+    assert len([line for line in lines if POLYJET.search(line)]) >= 4
+
+
+@pytest.mark.parametrize(("process", "key"), [("filament", "settings"), ("resin", "cleaning"), ("resin", "curing")])
+def test_a_fact_of_the_material_is_on_the_sheet_and_a_missing_one_is_named(tmp_path, process, key):
+    (tmp_path / "with").mkdir()
+    (tmp_path / "without").mkdir()
+    fact = "so and so much for seven minutes"
+    facts = f'[making]\n{key} = "{fact}"\nsource = "made up for a test"\n'
+    stated = " ".join(printed(process, tmp_path / "with", facts=facts))
+    missing = " ".join(printed(process, tmp_path / "without"))
+    assert fact in stated and f"(making.{key})" in missing
+    # The connector's own material states nothing, and its sheet says so.
+    assert stated.count(f"(making.{key})") == missing.count(f"(making.{key})") - 1
+
+
+@pytest.mark.parametrize("name", sorted(Library((ROOT,)).all("ports", object)))
+def test_a_hole_for_a_thread_states_its_tap_drill(name):
+    port = load_scene("paper-dome", {"connector.port": name}).port
+    _, lines = steps("paper-dome", {"connector.port": name})
+    text = next(line for line in lines if line.startswith("Port:"))
+    if port.family == "thread":
+        diameter, pitch = (float(part) for part in port.thread.removeprefix("M").split(" x "))
+        # ISO 2306: the tap drill of a coarse thread is its diameter less its pitch.
+        assert port.core_diameter == pytest.approx(diameter - pitch)
+        assert f"{port.core_diameter:g} mm" in text and f"tap {port.thread}" in text

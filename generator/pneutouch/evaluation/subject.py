@@ -31,8 +31,8 @@ _HINTS = {
         "resins": "take another membrane.material or print.profile",
     },
     "connector": {
-        "holes": "drill after printing",
-        "channels": "push a drill or wire through after printing",
+        "holes": "drill it after printing to the size in the print sheet's steps",
+        "channels": "drill it through after printing to the size in the print sheet's steps",
         "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
         "resins": "take another connector.material or print.connector_profile",
     },
@@ -42,7 +42,7 @@ _HINTS = {
 _RING_HINTS = {
     **_HINTS["connector"],
     "walls": "raise cast_ring.width_mm or cast_ring.thickness_mm, or lower cast_ring.hole_count",
-    "holes": "drill after printing, or raise cast_ring.hole_diameter_mm",
+    "holes": "drill them after printing, or raise cast_ring.hole_diameter_mm",
 }
 """Remedies in the design by rule for the ring that a flange is cast around."""
 

@@ -16,7 +16,7 @@ from pneutouch.wording import counted
 def making(scene: ResolvedDesign, pour: SiliconeBatch | None = None) -> list[str]:
     """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None."""
     text = filled("making.j2", scene=scene, pour=pour, glue=glue_of(scene), glues=GLUES)
-    return text.splitlines()
+    return [line for line in text.splitlines() if line]
 
 
 def making_title(pour: SiliconeBatch | None) -> str:

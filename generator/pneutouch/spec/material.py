@@ -21,6 +21,15 @@ CAST_SEAT = "clamped-flange-M2"
 _MOST = {"pot_life_min": 1e4, "cure_h": 1e4, "mixed_viscosity_Pa_s": 1e5}
 
 
+def _check_positive(table: Table, most: dict[str, float]) -> None:
+    """Raise ValueError for a quantity of the table that is not more than 0, or more than ``most`` of its key."""
+    for key, limit in most.items():
+        quantity: Quantity | None = getattr(table, key)
+        for number in () if quantity is None else (quantity.value, quantity.low, quantity.high):
+            if number is not None and not 0 < number <= limit:
+                raise ValueError(f"{key}: {number:g} must be more than 0 and at most {limit:g}")
+
+
 class Casting(Table):
     """[casting] of a material: its parts by mass, the time to work in, and what spoils its cure."""
 
@@ -38,11 +47,7 @@ class Casting(Table):
         for index, part in enumerate(self.parts_by_mass):
             if not part > 0:
                 raise ValueError(f"parts_by_mass[{index}] = {part:g}: must be more than 0")
-        for key, most in _MOST.items():
-            quantity: Quantity | None = getattr(self, key)
-            for number in () if quantity is None else (quantity.value, quantity.low, quantity.high):
-                if number is not None and not 0 < number <= most:
-                    raise ValueError(f"{key}: {number:g} must be more than 0 and at most {most:g}")
+        _check_positive(self, _MOST)
         low, high = SHRINKAGE_PERCENT
         for number in (self.shrinkage_percent.value, self.shrinkage_percent.low, self.shrinkage_percent.high):
             if number is not None and not low <= number <= high:
@@ -53,6 +58,16 @@ class Casting(Table):
         """Mass of each part, g, in ``total_g`` of the mixed liquid."""
         whole = math.fsum(self.parts_by_mass)
         return [total_g * part / whole for part in self.parts_by_mass]
+
+
+class MakingFacts(Table):
+    """[making] of a printer or a material, in words for the sheet; one left out is said there to be unknown."""
+
+    settings: str | None = Field(default=None, min_length=3, description="Settings of the machine or its slicer.")
+    cleaning: str | None = Field(default=None, min_length=3, description="Baths, time and drying.")
+    curing: str | None = Field(default=None, min_length=3, description="Post-cure: light, temperature, time.")
+    airtightness: str | None = Field(default=None, min_length=3, description="What makes its walls hold air.")
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
 
 class RelaxationTerm(Table):
@@ -233,7 +248,7 @@ _POSITIVE = {
 class Material(SparseTable):
     """One cured material. A digital material is identified by its code together with its base resins."""
 
-    left_out = ("casting", "curves")
+    left_out = ("casting", "curves", "making")
 
     title: str = Field(description="Common name.")
     code: str = Field(description="Short form for part numbers.")
@@ -270,6 +285,7 @@ class Material(SparseTable):
         default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."
     )
     casting: Casting | None = Field(default=None, description="Of a resin that is cast in a mould, not printed.")
+    making: MakingFacts | None = Field(default=None, description="As of a printer, before whose facts they come.")
 
     @model_validator(mode="after")
     def _relaxation_of_a_known_modulus(self) -> Material:
@@ -288,12 +304,7 @@ class Material(SparseTable):
 
     @model_validator(mode="after")
     def _of_matter(self) -> Material:
-        for key, most in _POSITIVE.items():
-            quantity: Quantity | None = getattr(self, key)
-            numbers = () if quantity is None else (quantity.value, quantity.low, quantity.high)
-            for number in numbers:
-                if number is not None and not 0 < number <= most:
-                    raise ValueError(f"{key}: {number:g} must be more than 0 and at most {most:g}")
+        _check_positive(self, _POSITIVE)
         return self
 
     @model_validator(mode="after")

@@ -5,8 +5,8 @@ from typing import Literal
 from pydantic import Field, field_validator, model_validator
 
 from pneutouch.errors import InputError
-from pneutouch.spec.fields import MaterialKind, Table
-from pneutouch.spec.material import Material
+from pneutouch.spec.fields import MaterialKind, SparseTable, Table
+from pneutouch.spec.material import MakingFacts, Material
 from pneutouch.spec.values import Quantity
 from pneutouch.units import UM
 
@@ -19,9 +19,6 @@ Process = Literal["polyjet", "filament", "resin", "casting"]
 
 CAST_STEP_MM = 0.02
 """Step of the mesh of a cast body, which copies its mould: no process sets one."""
-
-CAST_STEP_SOURCE = "STL of 0.01 to 0.03 mm is enough, finer prints no better: vendor, objet.com Tips and Tricks"
-"""Source of `CAST_STEP_MM`, for printed moulds."""
 
 _INCH_UM = 25400.0
 
@@ -126,8 +123,10 @@ class SmallestSizes(Table):
 _ENVELOPE = "Left out of casting alone: the printer of the mould bounds the size."
 
 
-class Printer(Table):
+class Printer(SparseTable):
     """One machine as a lab runs it, or casting, which has no machine: no envelope, no pixels and no layers."""
+
+    left_out = ("making",)
 
     title: str = Field(description="Name of the machine.")
     process: Process = Field(description="How bodies are made; resin is stereolithography, casting has no machine.")
@@ -143,6 +142,7 @@ class Printer(Table):
     swath_mm: Quantity | None = Field(default=None, description="Width that one pass of the heads covers.")
     deposition_mm3_per_s: Quantity | None = Field(default=None, description="Material laid down in a second; filament.")
     voxel_print: VoxelPrint | None = Field(default=None, description="Left out: the machine takes no voxel stacks.")
+    making: MakingFacts | None = Field(default=None, description="Facts for the steps of the print sheet.")
 
     @field_validator("hole_undersize_mm")
     @classmethod
@@ -191,11 +191,6 @@ class Printer(Table):
         if self.envelope_mm is None:
             raise _no_machine(self.title, "build volume")
         return self.envelope_mm
-
-    @property
-    def step_source(self) -> str:
-        """Source of the step in the plane; for casting, of the step that stands for it."""
-        return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
 
     def mode_for(self, *materials: Material) -> Mode | None:
         """The finest mode that makes the materials in one job, else None; casting needs a table [casting] of each."""

@@ -17,6 +17,7 @@ _SOLID = (
     "vendor, objet.com Tips and Tricks: watertight; vertices rounded to 32-bit floats and merged, as STL readers do"
 )
 _FINEST = "the machine's finest step: least of layer height and pixel, as its profile states; "
+_CAST_STEP = "STL of 0.01 to 0.03 mm is enough, finer prints no better: vendor, objet.com Tips and Tricks"
 _VENDOR = "vendor, objet.com Tips and Tricks: finer does not print better; four times finer: own, unverified"
 _GUESS = 1.5
 """Factor by which a sagitta overstates the deviation of a mesh with the same area as its curve."""
@@ -59,7 +60,8 @@ def _coarse(part: PrintPart) -> list[Finding]:
         return []
     text = f"the mesh is off by {deviation / UM:.0f} um ({how}); the machine's finest step is {step / UM:g} um"
     fix = part.item.hints.get("mesh", f"mesh it within {step:g} mm")
-    source = f"{_FINEST}{part.item.printer.step_source}"
+    resolution = part.item.printer.resolution
+    source = f"{_FINEST}{_CAST_STEP if resolution is None else resolution.source}"
     return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step, "mm"))]
 
 
@@ -195,7 +197,7 @@ def _check(job: PrintJob, part: PrintPart) -> Finding | None:
     share = float(areas[touched].sum() / areas.sum())
     if share <= _MOST:
         return None
-    text = f"support touches {share:.0%} of the sensing face; at most {_MOST:.0%} may be matte"
+    text = f"support touches {share:.0%} of the sensing face; at most {_MOST:.0%} may be touched"
     fix = part.item.hints.get("matte", "turn the part so that its sensing face looks up")
     where = spot(points[touched][0])
     return Finding("matte", "warning", part.name, text, fix, _MATTE_SOURCE, where, Excess(share, _MOST, ""))
