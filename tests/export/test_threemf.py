@@ -70,8 +70,7 @@ def test_a_known_mix_is_a_composite_of_its_base_resins(tmp_path):
     path = written(tmp_path, tetrahedron(mixed(TangoPlus=0.625, VeroClear=0.375)), tetrahedron(material(), "b", "b", 9))
     root = xml(path)
     bases = [base.get("name") for base in root.findall(".//basematerials/base", SPACE)]
-    intent = "membrane: Lab mix (TangoPlus + VeroClear)"
-    assert bases == [f"{intent}: TangoPlus", f"{intent}: VeroClear", "b: Lab mix (TangoPlus + VeroClear)"]
+    assert bases == ["TangoPlus", "VeroClear", "Lab mix (TangoPlus + VeroClear)"]
     (group,) = root.findall(".//m:compositematerials", SPACE)
     assert group.get("matid") == root.find(".//basematerials", SPACE).get("id")
     indices = [int(index) for index in group.get("matindices").split()]
@@ -91,12 +90,8 @@ def test_a_composite_reads_strictly_without_warning_and_comes_back(tmp_path):
     assert reader.GetWarningCount() == 0
     first, second = read_threemf(path).bodies
     assert first.material == one.label and second.material == other.label
-    assert {name.rsplit(": ", 1)[1]: ratio for name, ratio in first.mix.items()} == pytest.approx(
-        one.mix.fractions, abs=1e-6
-    )
-    assert {name.rsplit(": ", 1)[1]: ratio for name, ratio in second.mix.items()} == pytest.approx(
-        other.mix.fractions, abs=1e-6
-    )
+    assert first.mix == pytest.approx(one.mix.fractions, abs=1e-6)
+    assert second.mix == pytest.approx(other.mix.fractions, abs=1e-6)
     assert first.colour == second.colour == one.colour
 
 
@@ -114,10 +109,18 @@ def test_a_single_resin_with_a_mix_stays_a_base_material(tmp_path):
     assert xml(path).find(".//m:compositematerials", SPACE) is None
 
 
-def test_bodies_of_one_role_and_material_share_one_base_material(tmp_path):
-    body = tetrahedron(material())
-    path = written(tmp_path, body, replace(body, name="other", vertices=body.vertices + 9))
+def test_a_resin_is_one_base_material_whatever_is_made_of_it(tmp_path):
+    body, mix = tetrahedron(material()), mixed(TangoPlus=0.5, VeroClear=0.5)
+    other = replace(body, name="other", role="ring", vertices=body.vertices + 9)
+    path = written(tmp_path, body, other)
     assert len(xml(path).findall(".//basematerials/base", SPACE)) == 1
+    pure = material(title="TangoPlus", base_resins=["TangoPlus"])
+    path = written(
+        tmp_path, tetrahedron(pure, "a"), tetrahedron(mix, "b", shift=9.0), tetrahedron(mix, "c", shift=18.0)
+    )
+    names = [base.get("name") for base in xml(path).findall(".//basematerials/base", SPACE)]
+    assert sorted(names) == ["TangoPlus", "VeroClear"]
+    assert [one.mix for one in read_threemf(path).bodies[1:]] == [{"TangoPlus": 0.5, "VeroClear": 0.5}] * 2
 
 
 def test_the_thumbnail_is_the_packages_own_and_changes_nothing_else(tmp_path):

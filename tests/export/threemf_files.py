@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote, unquote
 
 import lib3mf
 
@@ -49,10 +49,12 @@ def with_metadata(source: Path, target: Path, **values: str) -> Path:
     def change(model: bytes) -> bytes:
         text = model.decode()
         for key, value in values.items():
-            stored = value if set(value) <= {"["} else quote(value)
+            plain = set(value) <= {"["}
+            stored = value if plain else base64.b64encode(value.encode()).decode()
             assert len(stored) < 65_000
-            pattern = rf'(<metadata name="\w+:{key.replace("_", "-")}"[^>]*>).*?(</metadata>)'
-            text, count = re.subn(pattern, lambda m, v=stored: m[1] + v + m[2], text, flags=re.DOTALL)
+            kind = "" if plain else ' type="xs:base64Binary"'
+            pattern = rf'(<metadata name="\w+:{key.replace("_", "-")}")[^>]*>.*?(</metadata>)'
+            text, count = re.subn(pattern, lambda m, v=f"{kind}>{stored}": m[1] + v + m[2], text, flags=re.DOTALL)
             assert count == 1, key
         return text.encode()
 
@@ -61,7 +63,7 @@ def with_metadata(source: Path, target: Path, **values: str) -> Path:
 
 def recipe_in(path: Path) -> dict[str, Any]:
     (found,) = re.findall(r':recipe"[^>]*>(.*?)</metadata>', parts_of(path)[MODEL].decode(), re.DOTALL)
-    recipe: dict[str, Any] = json.loads(unquote(found))
+    recipe: dict[str, Any] = json.loads(base64.b64decode(found))
     return recipe
 
 

@@ -1,26 +1,27 @@
 """3MF through lib3mf: one object per body, its material, one component assembly in one frame.
 
 Follows the 3MF core specification 1.4 and its materials extension 1.2: materials sit on mesh objects, never on the
-components object; a material's name gives the intent and its display colour is for rendering only. A digital material
-whose mix is known is a composite of its base resins, any other material a base material. Bodies lie in one assembly
-because tray software rejects separate objects whose bounding boxes overlap.
-
+components object; a material's name gives the intent and its display colour is for rendering only. There is one base
+material a resin (spec_core issue 53), whatever bodies are of it. A digital material whose mix is known is a composite
+of its base resins, any other material a base material. Bodies lie in one assembly because tray software rejects
+separate objects whose bounding boxes overlap.
 
 lib3mf 2.5 cannot read a model back whose XML has a text of 65536 bytes or more, nor one in which an escape such as
-``&quot;`` lies across a multiple of 65536 bytes (both measured; tests/export/test_threemf_read.py). Our own values are
-therefore percent-encoded where XML would escape, continued in further entries where they are long, and the longest
-stand last.
+``&quot;`` lies across a multiple of 65536 bytes (both measured; tests/export/test_threemf_read.py). Our own values that
+XML would escape are therefore of the type xs:base64Binary, all others xs:string; they are continued in further entries
+where they are long, and the longest stand last.
 
 On a tray every part is an object of its own, placed by one build item; bodies that grow in one print are the components
 of one object.
 """
 
+import base64
+import contextlib
 import ctypes
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import unquote
 
 import numpy as np
 
@@ -44,23 +45,23 @@ class Materials:
         self._group = model.AddBaseMaterialGroup()
         composed = any(is_composite(material) for material in materials)
         self._composites: Any = model.AddCompositeMaterials(self._group) if composed else None
-        self._bases: dict[tuple[str, str], int] = {}
+        self._bases: dict[str, int] = {}
 
     def property_of(self, body: Body) -> tuple[int, int]:
         """Resource and property of a body's material, as an object-level property takes them."""
-        material, intent = body.material, f"{body.role}: {body.material.label}"
+        material = body.material
         if not is_composite(material):
-            return self._group.GetResourceID(), self._base(intent, material.colour)
-        return self._composites.GetResourceID(), self._composite(intent, material)
+            return self._group.GetResourceID(), self._base(material.label, material.colour)
+        return self._composites.GetResourceID(), self._composite(material)
 
     def _base(self, name: str, colour: str) -> int:
-        """A base material, once for each name and colour: names are unique in a package."""
-        if (name, colour) not in self._bases:
+        """A base material, once for each name; it shows the colour of the first body that needs it."""
+        if name not in self._bases:
             shown = self._wrapper.RGBAToColor(*bytes.fromhex(colour[1:]), 255)
-            self._bases[name, colour] = self._group.AddMaterial(name, shown)
-        return self._bases[name, colour]
+            self._bases[name] = self._group.AddMaterial(name, shown)
+        return self._bases[name]
 
-    def _composite(self, intent: str, material: Material) -> int:
+    def _composite(self, material: Material) -> int:
         """A composite of base resins that show the digital material's colour: a viewer mixes the colours too."""
         import lib3mf
 
@@ -68,7 +69,7 @@ class Materials:
         parts = []
         for resin in material.base_resins:
             part = lib3mf.CompositeConstituent()
-            part.PropertyID = self._base(f"{intent}: {resin}", material.colour)
+            part.PropertyID = self._base(resin, material.colour)
             part.MixingRatio = material.mix.fractions[resin]
             parts.append(part)
         return int(self._composites.AddComposite(parts))
@@ -87,7 +88,8 @@ WELL_KNOWN = frozenset({"Title", "Designer", "Description", "Copyright", "Licens
 _LONGEST = 60_000
 """Greatest number of bytes of one metadata entry."""
 
-_ENCODED = str.maketrans({letter: f"%{ord(letter):02X}" for letter in "%&<>\"'"})
+_BINARY = "xs:base64Binary"
+"""Type of the entries whose text XML would escape."""
 
 
 def add_metadata(owner: Any, metadata: dict[str, str]) -> None:
@@ -97,11 +99,13 @@ def add_metadata(owner: Any, metadata: dict[str, str]) -> None:
         if key in WELL_KNOWN:
             group.AddMetaData("", key, metadata[key], "xs:string", True)
             continue
-        text = metadata[key].translate(_ENCODED)
+        text, kind = metadata[key], "xs:string"
+        if set(text) & set("&<>\"'"):
+            text, kind = base64.b64encode(text.encode()).decode(), _BINARY
         step = _LONGEST if text.isascii() else _LONGEST // 4
         for k in range(0, max(len(text), 1), step):
             name = f"{key}-{k // step + 1}" if k else key
-            group.AddMetaData(NAMESPACE, name, text[k : k + step], "xs:string", True)
+            group.AddMetaData(NAMESPACE, name, text[k : k + step], kind, True)
 
 
 def metadata_of(owner: Any) -> dict[tuple[str, str], str]:
@@ -109,6 +113,7 @@ def metadata_of(owner: Any) -> dict[tuple[str, str], str]:
     group = owner.GetMetaDataGroup()
     entries = [group.GetMetaData(k) for k in range(group.GetMetaDataCount())]
     values = {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
+    binary = {entry.GetName() for entry in entries if (entry.GetNameSpace(), entry.GetType()) == (NAMESPACE, _BINARY)}
     local = {name: value for (space, name), value in values.items() if space == NAMESPACE}
     foreign = {key: value for key, value in values.items() if key[0] != NAMESPACE}
     for name in list(local):
@@ -116,7 +121,10 @@ def metadata_of(owner: Any) -> dict[tuple[str, str], str]:
         while name in local and f"{name}-{k}" in local:
             local[name] += local.pop(f"{name}-{k}")
             k += 1
-    return {**foreign, **{(NAMESPACE, name): unquote(value) for name, value in local.items()}}
+    for name in binary & local.keys():
+        with contextlib.suppress(ValueError):
+            local[name] = base64.b64decode(local[name]).decode()
+    return {**foreign, **{(NAMESPACE, name): value for name, value in local.items()}}
 
 
 DECIMALS = 6
