@@ -15,6 +15,7 @@ import trimesh
 
 from pneutouch.export.step import canonical, exact_solid, step
 from pneutouch.export.threemf import threemf
+from pneutouch.workflows.build import job_files
 
 lib3mf = pytest.importorskip("lib3mf")
 NAMES = ["paper-dome", pytest.param("fingertip-dome", marks=pytest.mark.slow)]
@@ -65,6 +66,51 @@ def test_3mf_reads_strictly_without_warning_and_holds_two_manifold_bodies(output
         assert vertices.min() > 0
         assert volume(vertices, triangles) == pytest.approx(solid.volume, rel=1e-3)
     assert model.GetUnit() == lib3mf.ModelUnit.MilliMeter
+
+
+JOBS = {
+    "glued, dome up": (("paper-dome",), {"membrane": ["membrane"], "connector": ["connector"]}),
+    "glued, dome down": (
+        ("paper-dome", "print.orientation=dome-down"),
+        {"membrane": ["membrane"], "connector": ["connector"]},
+    ),
+    "in one print, with a plug": (
+        ("paper-dome", "connector.seat=one-piece", "connector.material=VeroClear"),
+        {"one-piece": ["membrane", "connector"], "plug": ["plug"]},
+    ),
+    "cast, with a ring": (("cast-dome",), {"connector": ["connector"], "ring": ["ring"]}),
+}
+
+
+@pytest.mark.parametrize("case", JOBS)
+def test_one_3mf_a_job_holds_its_bodies_as_they_lie_on_the_bed(case, evaluated, tmp_path):
+    words, expected = JOBS[case]
+    one_print = ("print.connector_profile=objet260-connex",) if "plug" in case else ()
+    evaluation = evaluated(*words, *one_print, model="membrane")
+    name, solids = evaluation.scene.name, {solid.name: solid for solid in evaluation.assembly.solids}
+    files = job_files(evaluation)
+    assert set(files) == {f"jobs/{name}-{job}.3mf" for job in expected}
+    for job, bodies in expected.items():
+        path = tmp_path / "job.3mf"
+        path.write_bytes(files[f"jobs/{name}-{job}.3mf"])
+        model, reader = read_strictly(path)
+        assert reader.GetWarningCount() == 0
+        assert [mesh.GetName() for mesh in mesh_objects(model)] == bodies
+        items = model.GetBuildItems()
+        assert items.MoveNext()
+        placed = np.array([list(row) for row in items.GetCurrent().GetObjectTransform().Fields])
+        assert not items.MoveNext()
+        assert np.linalg.det(placed[:3]) == pytest.approx(1.0)
+        turned = placed[2, 2] < 0
+        assert turned == ("dome down" in case and "membrane" in bodies)
+        on_bed = []
+        for mesh in mesh_objects(model):
+            vertices, triangles = arrays(mesh)
+            vertices = vertices @ placed[:3] + placed[3]
+            assert volume(vertices, triangles) == pytest.approx(solids[mesh.GetName()].volume, rel=5e-3)
+            on_bed.append(vertices.min(axis=0))
+        low = np.min(on_bed, axis=0)
+        assert low[2] == pytest.approx(0.0, abs=1e-5) and (low[:2] > 0).all()
 
 
 def test_3mf_materials_sit_on_the_bodies_and_name_the_base_resins(output):

@@ -104,7 +104,7 @@ def read_recipe(package: Package) -> BuildRecipe:
         raise InputError(
             "holds no recipe, so it cannot be rebuilt",
             file=where,
-            remedy="give a 3MF that pneutouch build wrote, or a design file",
+            remedy="give the NAME.3mf in a folder NAME that pneutouch build wrote, or a design file",
         )
     head = _head(package.recipe, f"{where}: recipe")
     inputs, kinds = head.inputs, scene_kinds()

@@ -1,6 +1,6 @@
 """The print sheet: which body takes which resin on which machine, how it is made step by step, and its order code."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
@@ -53,8 +53,9 @@ def code_fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     ]
 
 
-def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator, who chooses resins at the machine; ``left_out``: reason by file not written."""
+def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[str, str]) -> str:
+    """Markdown for the operator, who loads ``job_files`` and chooses resins at the machine; ``left_out``: reason by
+    file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = assembly.glue_volume / ML
     return filled(
@@ -66,6 +67,7 @@ def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
             (body, solid.material.label, *assembly.machine(body.name), solid.mass)
             for body, solid in zip(assembly.bodies, assembly.solids, strict=True)
         ],
+        job_files=job_files,
         left_out=left_out,
         deviation=max(assembly.deviation(body) for body in assembly.bodies),
         calibration=scene.calibration,

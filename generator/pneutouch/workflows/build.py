@@ -1,5 +1,6 @@
 """Build of a design: print files of sensor and mould, prediction, datasheet, print sheet, manifest, in one folder."""
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -66,6 +67,8 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("3MF")
     thumbnail = picture(shown(assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
     files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), thumbnail)
+    jobs = job_files(evaluation)
+    files |= jobs
     progress("STL")
     files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
     progress("GLB")
@@ -81,7 +84,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     files |= datasheet(sheet)
     if sheet.pressed is not None:
         files |= pressed_files(sheet.pressed, scene.name)
-    files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
+    files["print-sheet.md"] = print_sheet(sheet, sorted(jobs), left_out).encode()
     progress("files")
     made = with_manifest(
         files,
@@ -101,6 +104,27 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
 def input_hash(evaluation: Evaluation) -> str:
     """First twelve digits of the SHA-256 of the build's inputs and the program's version."""
     return hash_of(BuildRecipe.of(evaluation).inputs())
+
+
+def job_files(evaluation: Evaluation) -> dict[str, bytes]:
+    """One 3MF for each print job of the sensor by path: its bodies as they lie on the bed, in the corner of it. A cast
+    membrane has none: its mould is printed."""
+    scene, assembly, jobs = evaluation.scene, evaluation.assembly, defaultdict[str, list[Body]](list)
+    for body in assembly.bodies:
+        if not assembly.machine(body.name)[0].is_casting:
+            jobs[assembly.job(body.name)].append(body)
+    files = {}
+    for job, bodies in jobs.items():
+        name, names = f"{scene.name}-{job.replace(' ', '-')}", enumerated([body.name for body in bodies])
+        turn = np.diag([1.0, 1.0, 1.0] if assembly.stands_up(bodies[0].name) else [1.0, -1.0, -1.0])
+        low = np.min([(body.vertices @ turn).min(axis=0) for body in bodies], axis=0)
+        item = TrayItem(job, name, tuple(bodies), np.vstack([turn, np.array([_BORDER, _BORDER, 0.0]) - low]))
+        machine = assembly.machine(bodies[0].name)[0].title
+        about = {"Description": f"Print job of {scene.name}: {names}, as it lies on the bed of the {machine}"}
+        shared = _metadata(evaluation, assembly.bodies)
+        del shared[RECIPE]
+        files[f"{_JOB_FOLDER}/{name}.3mf"] = threemf_tray(name, [item], {**shared, **about})
+    return files
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
@@ -156,6 +180,9 @@ def calibrated_name(source: DesignSource, changes: Changes) -> str | None:
         return None
     return calibration if calibration.startswith(source.name) else f"{source.name}-{calibration}"
 
+
+_JOB_FOLDER = "jobs"
+"""Folder of the print jobs' files within the folder of a build."""
 
 _MOULD_FOLDER = "mould"
 """Folder of the mould's files within the folder of a build."""
