@@ -56,6 +56,19 @@ def test_round_sizes_of_a_given_wall_stay_inside_the_atlas():
     assert (pool.wall / rounded(problem, pool).radius <= problem.recipe.thickest * (1 + 1e-9)).all()
 
 
+def test_a_sensitivity_that_the_gas_behind_the_cavity_holds_back_is_said_to_bind_itself():
+    """The wall is given, far above what can be printed: nothing but the sensitivity keeps a design away."""
+    found = answer({"sensitivity_kPa_per_N": 8.0}, given={"wall_thickness_mm": 1.5, "materials": ["TangoPlus"]})
+    nearest, problem = found.answer.nearest, found.problem
+    assert nearest.binding == "sensitivity"
+    radius = np.linspace(1.5 / problem.recipe.thickest, 1.5 / problem.recipe.thinnest, 400)[1:-1]
+    zero = np.zeros(radius.size)
+    grid = evaluated(problem, zero, radius, zero + 1.5, zero)
+    # A hundredth of a millimetre of R0 lies between the grid's best and the nearest.
+    assert nearest.pool.figures.sensitivity > np.nanmax(grid.response.lines.sensitivity) * (1 - 1e-3)
+    assert problem.dead_volume(nearest.pool.radius)[0] > nearest.pool.response.cavity_volume[0]
+
+
 @pytest.mark.slow
 def test_what_a_wish_would_need_is_enough():
     wanted = {**FINGERTIP, "force_range_N": 150.0}

@@ -96,7 +96,7 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         choice.ends_with,
         "..".join(ends).replace("nan", "none"),
         f"{tenths_below(choice.rated / KPA):.1f}",
-        f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
+        f"{choice.binding} ({choice.binding_margin})",
     ]
 
 

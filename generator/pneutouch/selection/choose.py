@@ -35,6 +35,9 @@ _REFINABLE = 0.1
 
 _UNKNOWN = -1.0e9
 
+_FAR = 0.02
+"""Least margin that binds nothing: above what rounding a size moves."""
+
 _UNCOVERED = 10.0
 """Value taken for the uncertainty by the place of contact of a candidate that the table does not cover."""
 
@@ -75,8 +78,15 @@ class Candidate:
 
     @property
     def binding(self) -> str:
-        """The limit or requirement with the least margin; the sensitivity, which the search aims at, does not count."""
-        return min((name for name in self.margins if name != "sensitivity"), key=lambda name: self.margins[name])
+        """The limit or requirement with the least margin. The sensitivity, which the search aims at, counts only where
+        it is missed far from every limit: no size that was searched is nearer."""
+        other = min((name for name in self.margins if name != "sensitivity"), key=lambda name: self.margins[name])
+        return "sensitivity" if self.margins.get("sensitivity", 0.0) < 0.0 and self.margins[other] > _FAR else other
+
+    @property
+    def binding_margin(self) -> str:
+        """The margin of what binds, %; of a missed sensitivity that no size comes nearer."""
+        return "no size is nearer" if self.binding == "sensitivity" else f"{100 * self.margins[self.binding]:+.0f} %"
 
 
 @dataclass(frozen=True)

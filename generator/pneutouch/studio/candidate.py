@@ -122,7 +122,7 @@ def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> lis
     span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
     rows = [
         ("Rated pressure", f"{tenths_below(choice.rated / KPA):.1f} kPa", f"S {span[0]} to {span[1]} kPa/N up to it"),
-        ("Binds", choice.binding, f"margin {100 * choice.margins[choice.binding]:+.0f} %"),
+        ("Binds", choice.binding, choice.binding_margin),
     ]
     if choice.contact is not None:
         return [*rows, ("Under a plate", f"{choice.contact.plate_kPa_per_N:.3f} kPa/N", "by the atlas")]

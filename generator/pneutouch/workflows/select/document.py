@@ -233,7 +233,10 @@ def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
         allowed = f" ({100 * selection.problem.tolerance:g} % is allowed)" if name == "sensitivity" else ""
         digits = 1 if percent is not None and percent < _FEW else 0
         parts.append(f"{name}, not known" if percent is None else f"{name} by {percent:.{digits}f} %{allowed}")
-    return ", ".join(parts) or "nothing once rounded"
+    cavity = float(nearest.pool.response.cavity_volume[0])
+    behind = float(selection.problem.dead_volume(nearest.pool.radius)[0])
+    why = f"; {behind / ML:.2f} mL of gas lie behind a cavity of {cavity / ML:.2f} mL"
+    return (", ".join(parts) or "nothing once rounded") + (why if nearest.binding == "sensitivity" else "")
 
 
 Typed = Callable[[str, Any], str]
