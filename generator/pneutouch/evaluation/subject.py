@@ -31,8 +31,8 @@ _HINTS = {
         "resins": "take another membrane.material or print.profile",
     },
     "connector": {
-        "holes": "drill it after printing to the size in the print sheet's steps",
-        "channels": "drill it through after printing to the size in the print sheet's steps",
+        "holes": "drill it after printing",
+        "channels": "drill it through after printing",
         "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
         "resins": "take another connector.material or print.connector_profile",
     },

@@ -13,7 +13,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.printability.measure.chords import first_hits
-from pneutouch.printability.measure.thin import BLUNT, FeatureKind, ThinPlace
+from pneutouch.printability.measure.thin import FeatureKind, ThinPlace
 from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.results.printing import Excess, Finding, Severity
@@ -82,13 +82,11 @@ def _finding(
     source: str,
     fix: str,
 ) -> Finding:
-    size = places[0].size
-    least = min((place.end for place in places if place.end is not None), default=size)
-    thin = f"thins to {least:.2f} mm, and {BLUNT:g} mm on is" if round(least, 2) < round(size, 2) else "is"
+    size = min((place.end for place in places if place.end is not None), default=places[0].size)
     often = f" ({len(places)} places)" if len(places) > 1 else ""
-    text = f"{noun} {thin} {wording(size, limit, severity)}{often}"
+    text = f"{noun} is {wording(size, limit, severity)}{often}"
     hint = part.item.hints.get(rule, fix)
-    return Finding(rule, severity, part.name, text, hint, source, places[0].where, Excess(least, limit, "mm"))
+    return Finding(rule, severity, part.name, text, hint, source, places[0].where, Excess(size, limit, "mm"))
 
 
 def spot(where: object) -> Point3:
