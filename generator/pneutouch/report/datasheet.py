@@ -158,7 +158,7 @@ def _conditions(sheet: SheetData) -> list[SheetBlock]:
 
 def _making(sheet: SheetData) -> list[SheetBlock]:
     """Blocks on the mould, on how the sensor is made, and on the findings of the print rules."""
-    bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer", "Support")
+    bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer")
     head = ("Severity", "Rule", "Body", "Finding", "Remedy")
     findings = [[f.severity, f.rule, f.body, f.message, f.fix] for f in sheet.findings]
     return [

@@ -25,12 +25,12 @@ def making_title(pour: SiliconeBatch | None) -> str:
 
 
 def body_rows(sheet: SheetData) -> list[list[str]]:
-    """Rows of the sensor's bodies: name, material, volume and mass, machine and mode, support."""
+    """Rows of the sensor's bodies: name, material, volume and mass, machine and mode."""
     rows = []
     for solid in sheet.assembly.solids:
         printer, mode = sheet.assembly.machine(solid.name)
         size, machine = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{printer.title}, {mode.label}"
-        rows.append([solid.name, solid.material.label, size, machine, printer.support])
+        rows.append([solid.name, solid.material.label, size, machine])
     return rows
 
 
