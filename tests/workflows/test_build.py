@@ -18,6 +18,8 @@ from tests.refusals import refused
 
 FILES = {
     "paper-dome.3mf",
+    "jobs/paper-dome-connector.3mf",
+    "jobs/paper-dome-membrane.3mf",
     "stl/membrane.stl",
     "stl/connector.stl",
     "paper-dome.step",
