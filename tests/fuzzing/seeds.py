@@ -98,7 +98,7 @@ HEADS = (
 )
 MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" xmlns:p="{space}">
-<metadata name="Title">a</metadata><metadata name="p:recipe" type="xs:string">{recipe}</metadata>
+<metadata name="Title">a</metadata><metadata name="p:recipe" type="xs:base64Binary">{recipe}</metadata>
 <metadata name="p:input-hash" type="xs:string">{hash}</metadata>
 <resources><basematerials id="1"><base name="TangoPlus" displaycolor="#204060FF"/></basematerials>
 <object id="2" type="model" pid="1" pindex="0"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
@@ -219,11 +219,11 @@ def _prediction() -> bytes:
 
 
 def _threemf() -> bytes:
-    from urllib.parse import quote
+    from base64 import b64encode
 
     from pneutouch.export.threemf import NAMESPACE
 
-    model = MODEL.format(space=NAMESPACE, recipe=quote(_recipe()), hash=recipe()[2])
+    model = MODEL.format(space=NAMESPACE, recipe=b64encode(_recipe().encode()).decode(), hash=recipe()[2])
     named = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
     return "".join(f"=== {name}\n{text}\n" for name, text in named.items()).encode()
 

@@ -62,7 +62,7 @@ def test_the_compliance_at_a_small_load_is_that_of_the_free_dome(elastic):
 def test_a_force_creeps_where_the_wall_relaxes(relaxing):
     """The gas takes over what the wall lets go: the pressure rises for as long as the slowest term, and ends as slow."""
     signals = run_respond(relaxing, Load(1.0, duration=5.0)).signals
-    assert len(signals) == 2
+    assert len(signals) == 3
     for signal in signals:
         one, two, three = (signal.gauge[np.searchsorted(signal.time, t)] for t in (0.8, 2.0, 4.9))
         assert one < two < three < signal.slow[-1]
@@ -122,7 +122,8 @@ def test_the_folder_holds_what_the_document_states(elastic, tmp_path):
 def test_python_and_the_command_give_the_same(elastic, tmp_path):
     result = pt.respond("agilus-dome", sine_Hz=5.0, peak_N=0.5, model="atlas")
     assert result["signal"] == "sine" and result["peak_N"] == 0.5
-    assert all(0.2 < state["gain"] < 1.5 for state in result["states"])
+    # By the third source the resin is far stiffer at 5 Hz than at rest.
+    assert all(0.02 < state["gain"] < 1.5 for state in result["states"])
     with pytest.raises(InputError):
         pt.respond("agilus-dome", sine_Hz=5.0, step_N=0.5)
     with pytest.raises(InputError):

@@ -107,7 +107,7 @@ def test_the_3mf_gives_every_part_its_material_and_every_uuid_once(folder):
     objects = {thing.get("name"): thing for thing in root.iter(f"{SPACE}object")}
     assert len(objects) == 21
     for name, thing in objects.items():
-        assert bases[int(thing.get("pindex"))].startswith(f"membrane: {RESINS['ABCDEFG'.index(name[0])]}")
+        assert bases[int(thing.get("pindex"))].startswith(RESINS["ABCDEFG".index(name[0])])
     uuids = [value for thing in root.iter() for key, value in thing.attrib.items() if key.endswith("}UUID")]
     assert len(uuids) == len(set(uuids)) == 21 + 21 + 1
 
