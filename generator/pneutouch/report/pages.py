@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.export.reader.render import templates
+from pneutouch.export import templates
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder

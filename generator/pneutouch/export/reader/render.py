@@ -2,16 +2,14 @@
 
 import pprint
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from pneutouch.export import templates
 from pneutouch.export.reader.reading import NOISES, QUIET, Status
 from pneutouch.spec.gauge import Gauge
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 _BUS = "ABP2"
 """Order codes that begin so have the protocol of the sketch: command AA 00 00, 5 ms, seven bytes with pressure
@@ -111,23 +109,6 @@ def f32(value: float) -> str:
     """A float32 literal of C."""
     text = f"{value:.9g}"
     return f"{text}f" if "." in text or "e" in text else f"{text}.0f"
-
-
-def templates(folder: Path, *, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> "Environment":
-    """Jinja's environment of the templates in a folder: unknown names are errors, tags leave no lines of their own.
-
-    A text that is filled in ends without the last line break of its template.
-    """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    return Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=autoescape,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=finalize,
-    )
 
 
 def _rendered(template: str, record: Mapping[str, Any], **more: Any) -> bytes:

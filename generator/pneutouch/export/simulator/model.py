@@ -13,7 +13,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.body.solid import mesh_of
-from pneutouch.export.reader.render import templates
+from pneutouch.export import templates
 from pneutouch.export.scene import stl
 from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
