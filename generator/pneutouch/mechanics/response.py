@@ -43,7 +43,7 @@ class Figures(NamedTuple, Generic[Of]):
 
     def stiffness_at(self, depth: float | None) -> Of:
         """Tangent stiffness at a depth of `SHALLOW`, mm, or the mean over the range for None; N/mm."""
-        found: Of = self.stiffness if depth is None else self[-2 + SHALLOW.index(depth)]
+        found: Of = self.stiffness if depth is None else getattr(self, f"stiffness_{depth:g}mm")
         return found
 
     @property

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.evaluation.dynamics import UNKNOWN_END
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
 from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH
 from pneutouch.report.prose import WORDS
-from pneutouch.units import KPA
+from pneutouch.units import KPA, ML
 from pneutouch.wording import tenths_below
 
 NOT_TESTED = "not tested"
@@ -114,7 +115,7 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
     lower = (
         ""
         if None in lowest_Hz
-        else f"; {_values(lowest_Hz, '.3g', 'Hz')} with 0.15 mL in the gauge, whose volume is not known"
+        else f"; {_values(lowest_Hz, '.3g', 'Hz')} with {UNKNOWN_END / ML:g} mL in the gauge, whose volume is not known"
     )
     bandwidths_Hz = _values([state.bandwidth_3_dB_Hz for state in ends], ".3g", "Hz")
     after = _values([state.delay_ms for state in ends], ".2g", "ms")

@@ -187,7 +187,7 @@ class DynamicRecord:
     first_resonance_low_Hz: float | None = None
     """First resonance with 0.15 mL in a gauge whose volume is not known; left out where it is known."""
     resonance_gain_low: float | None = None
-    """Gain at that resonance."""
+    """Lower end of the gain at the resonance; left out where the gas in the gauge is known."""
 
 
 @dataclass(frozen=True, slots=True)

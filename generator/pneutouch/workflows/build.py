@@ -113,7 +113,8 @@ def job_files(evaluation: Evaluation) -> dict[str, bytes]:
     for body in assembly.bodies:
         if not assembly.machine(body.name)[0].is_casting:
             jobs[assembly.job(body.name)].append(body)
-    files = {}
+    shared, files = _metadata(evaluation, assembly.bodies), {}
+    del shared[RECIPE]
     for job, bodies in jobs.items():
         name, names = f"{scene.name}-{job.replace(' ', '-')}", enumerated([body.name for body in bodies])
         turn = np.diag([1.0, 1.0, 1.0] if assembly.stands_up(bodies[0].name) else [1.0, -1.0, -1.0])
@@ -121,8 +122,6 @@ def job_files(evaluation: Evaluation) -> dict[str, bytes]:
         item = TrayItem(job, name, tuple(bodies), np.vstack([turn, np.array([_BORDER, _BORDER, 0.0]) - low]))
         machine = assembly.machine(bodies[0].name)[0].title
         about = {"Description": f"Print job of {scene.name}: {names}, as it lies on the bed of the {machine}"}
-        shared = _metadata(evaluation, assembly.bodies)
-        del shared[RECIPE]
         files[f"{_JOB_FOLDER}/{name}.3mf"] = threemf_tray(name, [item], {**shared, **about})
     return files
 

@@ -77,10 +77,9 @@ class MembraneTheory(SensorModel):
         at_rest = float(cap_volume(np.array(sensor.dome.inner_radius), sensor.dome.inner_radius))
         heights = [_filled_height(sensor, one, at_rest) for one in fillings]
         states = _states(sensor, np.array(heights), self.closure)
-        gas, last = sensor.gas, LIMIT_HEIGHT
-        injected = (gas.injected(s.driving_pressure, s.cavity_volume, at_rest) for s in states)
+        injected = (sensor.gas.injected(s.driving_pressure, s.cavity_volume, at_rest) for s in states)
         return tuple(
-            replace(s, held=Held(float(v), x < last, _is_sealed(sensor, x)))
+            replace(s, held=Held(float(v), x < LIMIT_HEIGHT, _is_sealed(sensor, x)))
             for s, v, x in zip(states, injected, heights, strict=True)
         )
 
