@@ -67,6 +67,7 @@ def row(name: str, material: Material) -> dict[str, Any]:
     """A material, its law, and its sensitivities."""
     sensor, modulus = material_sensor(material), material.shear_modulus_MPa
     law, misfit, stretch = law_words(material)
+    below = "silicones, below" if material.is_cast else "filaments, below"
     return {
         "material": name,
         "kind": material.kind_shown,
@@ -75,7 +76,7 @@ def row(name: str, material: Material) -> dict[str, Any]:
         "misfit": misfit,
         "stretch": stretch,
         "sensitivity": [sensitivity(sensor, pressure) for pressure in PRESSURES_KPA],
-        "source": "database, below" if material.law is not None else modulus.source.split(":")[0].split(";")[0],
+        "source": modulus.source.split(":")[0].split(";")[0] if material.law is None else below,
     }
 
 

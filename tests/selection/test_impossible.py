@@ -198,8 +198,8 @@ def replaced(words: list[str], option: list[str]) -> list[str]:
 def test_other_printers_and_processes_are_those_that_make_the_resins(library):
     free = target({"sensitivity_kPa_per_N": 2.0})
     base = base_scene(free, "test", library)
-    assert offers(base, free, library) == ["j735"]
-    assert offers(base, free, library, others=True) == ["casting"]
+    assert offers(base, free, library) == ["j55", "j735"]
+    assert offers(base, free, library, others=True) == ["filament", "resin", "casting"]
     named = free.model_copy(update={"given": Given(materials=["FLX9995"])})
     assert offers(base, named, library, others=True) == []
 

@@ -282,7 +282,11 @@ def left_out_lines(selection: SelectionRun) -> list[str]:
     """Lines on the resins left out, and on the walls searched if no design was found."""
     box = selection.problem.recipe
     walls = f"searched: walls of {box.thinnest:g} to {box.thickest:g} R0, which the atlas covers"
-    lines = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+    left = selection.left_out
+    lines = [
+        f"left out: {', '.join(name for name in left if left[name] == why)}: {why}"
+        for why in dict.fromkeys(left.values())
+    ]
     return lines if selection.answer.designs or not selection.problem.resins else [*lines, walls]
 
 

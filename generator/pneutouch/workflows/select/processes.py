@@ -226,22 +226,26 @@ def profile_of(process: str, target: Target, library: Library, usual: str = "") 
 
 
 def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bool = False) -> list[str]:
-    """Other printers of the base's process that make one of the resins named, or an elastomer if none is; with
-    ``others`` instead the other processes that have such a printer."""
+    """Other printers of the base's process that make one of the resins named, or an elastomer if none is, but none that
+    differs from one before it in tray and pace alone; with ``others`` the other processes that have such a printer."""
     here = base.printer.process
     if others:
         processes = (process for process in get_args(Process) if process != here)
         return [process for process in processes if profile_of(process, target, library) is not None]
-    printers = library.readable("printers", Printer)
     materials = library.all("materials", Material)
     offered = target.given.materials or [name for name in materials if target.have.holds("materials", name)]
-    names = [name for name in offered if materials[name].kind == "elastomer"]
-    return [
-        name
-        for name, printer in printers.items()
-        if printer.process == here and name != base.design.print.profile and target.have.holds("printers", name)
-        if any(printer.mode_for(materials[one]) is not None for one in names)
-    ]
+    soft = [name for name in offered if materials[name].kind == "elastomer"]
+
+    def made(printer: Printer) -> set[str]:
+        return {name for name in soft if printer.mode_for(materials[name]) is not None}
+
+    names, known = [], [(made(base.printer), base.printer.smallest)]
+    for name, printer in library.readable("printers", Printer).items():
+        makes, fit = made(printer), printer.process == here and target.have.holds("printers", name)
+        if fit and makes and not any(makes <= had and printer.smallest == sizes for had, sizes in known):
+            names.append(name)
+            known.append((makes, printer.smallest))
+    return names
 
 
 def on_process(target: Target, process: str, library: Library) -> Target:
