@@ -125,7 +125,7 @@ def test_a_fact_of_the_material_is_on_the_sheet_and_a_missing_one_is_named(tmp_p
 def test_a_hole_for_a_thread_states_its_tap_drill(name):
     port = load_scene("paper-dome", {"connector.port": name}).port
     _, lines = steps("paper-dome", {"connector.port": name})
-    text = next(line for line in lines if line.startswith("Port:"))
+    text = next(line for line in lines if line.startswith("Drilling"))
     if port.family == "thread":
         diameter, pitch = (float(part) for part in port.thread.removeprefix("M").split(" x "))
         # ISO 2306: the tap drill of a coarse thread is its diameter less its pitch.

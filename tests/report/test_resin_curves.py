@@ -22,13 +22,14 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
     assert charts.resin_curves(outside, materials, 0.02, "solid", None) == {}
 
 
-def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
-    from pneutouch.catalogue.library import elastomers
+def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated):
     from pneutouch.evaluation.charts import in_resin, resin_curves
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
 
-    sensor, elastic = evaluated("paper-dome").sensor, elastomers(library)
+    dome = evaluated("paper-dome")
+    sensor, elastic = dome.sensor, dome.alike
+    assert len(elastic) == 7
     found = resin_curves(sensor, elastic, 0.022, "solid", None)
     assert set(found) == {m.title for m in elastic.values()}
     assert drawn_by(found) == "drawn by the atlas"

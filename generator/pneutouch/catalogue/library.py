@@ -284,8 +284,7 @@ def elastomers(library: Library, casting: bool = False) -> Resins:
     return {name: material for name, material in soft.items() if casting or not material.is_cast}
 
 
-def alike(printer: Printer, resins: Resins) -> Resins:
-    """Resins made in the same way as a printer's membrane: all printed ones, or those of a casting profile."""
-    if not printer.is_casting:
-        return {name: material for name, material in resins.items() if not material.is_cast}
-    return {name: material for name, material in resins.items() if printer.mode_for(material) is not None}
+def compared(library: Library, printer: Printer) -> Resins:
+    """Elastomers that a printer makes, and those that the paper measured, which the model's error is taken from."""
+    known = elastomers(library, printer.is_casting)
+    return {name: one for name, one in known.items() if one.measured is not None or printer.mode_for(one) is not None}

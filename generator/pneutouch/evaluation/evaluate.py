@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.library import Resins, alike, elastomers
+from pneutouch.catalogue.library import Resins, compared
 from pneutouch.errors import BeyondLimitError, InputError, StatedPressureError, nearest
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
@@ -76,8 +76,9 @@ class Evaluation:
 
     @property
     def alike(self) -> Resins:
-        """Those of `resins` that are made as the membrane is: printed, or by the casting profile."""
-        return alike(self.scene.printer, self.resins)
+        """Those of `resins` that the membrane's printer, or the casting profile, makes."""
+        makes = self.scene.printer.mode_for
+        return {name: one for name, one in self.resins.items() if makes(one) is not None}
 
     @cached_property
     def findings(self) -> list[Finding]:
@@ -195,7 +196,7 @@ def evaluate(
     library = library or Library.default()
     scene = load_scene(design, changes, library)
     options = PredictionOptions(model, closure, clamp, tolerance, aged)
-    return evaluate_scene(scene, partial(elastomers, library, scene.printer.is_casting), options)
+    return evaluate_scene(scene, partial(compared, library, scene.printer), options)
 
 
 def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], options: PredictionOptions) -> Evaluation:

@@ -259,7 +259,7 @@ def profile_note(
     ]
     taken = f"profile {profile} ({printers[profile].title}) runs {chosen}"
     unnamed = "" if material is not None else ", the resin taken because none is given"
-    also = f"; so does {', '.join(others)}, set by print.profile" if others else ""
+    also = f"; others that do, set by print.profile: {', '.join(others)}" if others else ""
     return f"{taken}{unnamed}{also}"
 
 

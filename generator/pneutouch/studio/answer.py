@@ -17,7 +17,7 @@ from pneutouch.body import Body, Solid
 from pneutouch.body.section import section_outline
 from pneutouch.body.solid import corner_normals
 from pneutouch.catalogue import DesignSource, Library, load_scene
-from pneutouch.catalogue.library import elastomers
+from pneutouch.catalogue.library import compared
 from pneutouch.evaluation.charts import curve, resin_curves, tuning
 from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene, sensor_of
 from pneutouch.evaluation.result import by_model, rating_record
@@ -116,7 +116,7 @@ class Answers:
         answer = partial(_named(QuickAnswer, source), version=version, drawing=drawing)
         if why is not None:
             return answer(outside=why, prediction=None, curves=None)
-        resins = partial(elastomers, self._library, scene.printer.is_casting)
+        resins = partial(compared, self._library, scene.printer)
         evaluation = evaluate_scene(scene, resins, PredictionOptions("atlas"))
         self._last = replace(question, version=version), evaluation
         pressures = [state.driving_pressure for state in evaluation.prediction.states]
@@ -134,7 +134,7 @@ class Answers:
         question = replace(question, version=version)
         if self._last is None or self._last[0] != question:
             scene = load_scene(source, {}, self._library)
-            resins = partial(elastomers, self._library, scene.printer.is_casting)
+            resins = partial(compared, self._library, scene.printer)
             self._last = question, evaluate_scene(scene, resins, PredictionOptions("atlas"))
         evaluation = self._last[1]
         return PredictedDesign(prediction=Prediction(evaluation).to_dict(), curves=_curves(evaluation))
@@ -152,7 +152,7 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     """
     source = question.source(bases, library)
     scene = load_scene(source, {}, library)
-    resins = partial(elastomers, library, scene.printer.is_casting)
+    resins = partial(compared, library, scene.printer)
     evaluation = evaluate_scene(scene, resins, PredictionOptions(USUAL))
     return _named(FullAnswer, source)(
         prediction=Prediction(evaluation).to_dict(),

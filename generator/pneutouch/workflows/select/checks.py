@@ -17,7 +17,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.library import elastomers
+from pneutouch.catalogue.library import compared
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.charts import interval
 from pneutouch.evaluation.contact_object import check_object, rigid_base
@@ -271,7 +271,7 @@ class CandidateSolver:
 
     @cached_property
     def _materials(self) -> list[Material]:
-        return list(elastomers(self._library, self._base.printer.is_casting).values())
+        return list(compared(self._library, self._base.printer).values())
 
 
 def sensitivity_uncertainties(

@@ -12,7 +12,7 @@ import numpy as np
 from pneutouch import __version__
 from pneutouch.arrays import Index
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
-from pneutouch.catalogue.library import CachedLibrary, elastomers
+from pneutouch.catalogue.library import CachedLibrary, compared
 from pneutouch.errors import InputError, PneutouchError, StatedPressureError
 from pneutouch.evaluation.evaluate import DrawnScene, Evaluation, PredictionOptions, drawn, evaluate_drawn
 from pneutouch.evaluation.result import MODEL_DIGITS, NOTHING, by_model, rating_record
@@ -98,8 +98,8 @@ def study(plan: SweepPlan, library: Library, *, tried: bool = True) -> SweepStud
     names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
     if plan.model != "membrane":
         # The uncertainty takes the model's error from every resin that was measured.
-        casting = any(library.load("printers", name).is_casting for kind, name in names if kind == "printers")
-        names |= {("materials", name) for name in elastomers(library, casting)}
+        printers = [library.load(kind, name) for kind, name in names if kind == "printers"]
+        names |= {("materials", name) for printer in printers for name in compared(library, printer)}
     for kind, name in sorted(names):
         # Loading refuses what is no plain file.
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
@@ -344,7 +344,7 @@ def _answers(scenes: Sequence[DrawnScene | Exception], model: str) -> list[dict[
 
 
 def _evaluated(scene: DrawnScene, answers: dict[str, Answered], library: Library) -> Evaluation:
-    return evaluate_drawn(scene, partial(elastomers, library, scene.scene.printer.is_casting), answers)
+    return evaluate_drawn(scene, partial(compared, library, scene.scene.printer), answers)
 
 
 def _values(evaluations: Sequence[Evaluation]) -> list[_Values | Exception]:
