@@ -42,7 +42,7 @@ SLOW = {
         "predict long-tube --set membrane.wall_thickness_mm=1.2 --set pneumatics.driving_pressures_kPa=[0,7.5]",
     ),
     "select by mix": (
-        "select --sensitivity 1.8 --at 12 --inner-radius 9.25 --wall 1.5 --base paper-dome --mix TangoPlus+VeroClear",
+        "select --sensitivity 1.8 --at 12 --inner-radius 9.25 --wall 1.5 --base paper-dome --profile j735 --mix TangoPlus+VeroClear",
     ),
     "select by file": ("select fingertip.toml --tunability 5 --write chosen", "check chosen"),
     "tray": ("tray paper-dome --over membrane.material=TangoPlus,FLX9960 --copies 3", "tray seven-resins.toml"),

@@ -131,3 +131,11 @@ def test_a_hole_for_a_thread_states_its_tap_drill(name):
         # ISO 2306: the tap drill of a coarse thread is its diameter less its pitch.
         assert port.core_diameter == pytest.approx(diameter - pitch)
         assert f"{port.core_diameter:g} mm" in text and f"tap {port.thread}" in text
+
+
+def test_a_mix_is_printed_from_its_stack_and_a_digital_material_by_its_code():
+    _, mixed = steps("graded-dome")
+    assert not [line for line in mixed if line.startswith("Digital material:")]
+    assert any("--voxels" in line and "graded-dome-voxels" in line for line in mixed)
+    _, coded = steps("fingertip-dome")
+    assert any("FLX9940" in line for line in coded) and not any("--voxels" in line for line in coded)

@@ -102,7 +102,7 @@ def test_even_knots_and_labels():
 
 
 def test_the_grade_of_a_design_is_its_fractions_at_the_knots(tmp_path):
-    path = design(tmp_path, f"{PAIR}, fraction = [0, 0.08, 0.25], at = [0, 0.25, 1]")
+    path = design(tmp_path, f"{PAIR}, fraction = [0, 0.08, 0.25], at = [0, 0.25, 1]", '[print]\nprofile = "j735"')
     along = load_scene(path, None, LIBRARY).membrane_material.along
     found = np.interp([0, 0.25, 1], along.arc, along.stiff_fraction)
     assert found == pytest.approx([0, 0.08, 0.25], abs=1e-12)

@@ -6,6 +6,7 @@ import datetime
 import itertools
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,7 @@ BOTH = CouponOptions(profile="j735", mixing=(PAIR,), only=("puck", "dumbbell"))
 
 
 def test_every_fraction_is_printed_of_its_own_mix(tmp_path):
-    made = build_coupons(CouponOptions(mixing=(PAIR,)), tmp_path, LIBRARY)
+    made = build_coupons(CouponOptions(profile="j735", mixing=(PAIR,)), tmp_path, LIBRARY)
     folder = Path(made.folder)
     assert [(c.coupon, c.copies) for c in made.coupons] == [("puck", 2)] * len(FRACTIONS)
     assert len({c.piece for c in made.coupons}) == 8
@@ -55,7 +56,14 @@ def test_dumbbells_and_pucks_of_all_fractions_fit_a_large_tray():
     for a, b in itertools.combinations(boxes, 2):
         assert np.maximum(a[0] - b[1], b[0] - a[1])[:2].max() >= 4.99
     with pytest.raises(InputError, match="no longer fits the tray"):
-        lay("objet260-connex", order(CouponOptions(mixing=(PAIR,), only=("puck", "dumbbell")), LIBRARY).items)
+        small = found.items[0].printer.model_copy(update={"envelope_mm": LIBRARY.load("printers", "form3").envelope_mm})
+        lay("j735", [replace(item, printer=small) for item in found.items])
+
+
+def test_fractions_are_no_coupons_of_a_machine_without_voxel_print():
+    with pytest.raises(InputError) as caught:
+        order(CouponOptions(profile="objet260-connex", mixing=(PAIR,)), LIBRARY)
+    assert caught.value.key == "mixing" and "j735" in str(caught.value.remedy)
 
 
 def test_the_results_file_lists_every_fraction(tmp_path):
@@ -196,7 +204,7 @@ def test_bad_pairs_are_said(enter, pair, said):
             "mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear",
         ),
         (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f'mixing = "{PAIR}": the'),
-        (CouponOptions(mixing=(PAIR,), only=("gauge",)), 'only = "gauge"'),
+        (CouponOptions(mixing=(PAIR,), profile="j735", only=("gauge",)), 'only = "gauge"'),
     ],
 )
 def test_bad_orders_are_said(asked, said):

@@ -33,6 +33,8 @@ FLAT = [
     "0,22",
     "--wall",
     "1.2",
+    "--profile",
+    "j735",
     "--base",
     "paper-dome",
 ]
@@ -181,12 +183,12 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(shallow, monkeyp
         ),
         (
             ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "abs-filament"],
-            "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear; it runs ABS",
+            "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear",
         ),
         (["--sensitivity", "1.9", "--mix", "TangoPlus"], "--mix TangoPlus: must be SOFT+STIFF"),
         (["--sensitivity", "1.9", "--mix", "TangoPlus+Vero"], "TangoPlus+Vero"),
         (
-            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"],
+            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2", "--profile", "j735"],
             "error: --wall 0.2: the printer's least wall is 0.6 mm",
         ),
         (
@@ -202,6 +204,8 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(shallow, monkeyp
                 "1.5",
                 "--max-diameter",
                 "20",
+                "--profile",
+                "j735",
             ],
             "error: --max-diameter 20: a dome of inner radius 9.25 mm and wall 1.5 mm is 21.5 mm wide; give a smaller "
             "given.inner_radius_mm (--inner-radius)",
@@ -220,7 +224,9 @@ def test_a_wall_that_nobody_gave_is_not_blamed_on_the_target(monkeypatch, tmp_pa
     monkeypatch.setattr("pneutouch.workflows.select.graded.middle_wall", lambda *_: None)
     base = tmp_path / "thin.toml"
     base.write_text("[membrane]\nwall_thickness_mm = 0.5\n", encoding="utf-8")
-    result = run("select", "--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--base", str(base))
+    result = run(
+        "select", "--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "j735", "--base", str(base)
+    )
     assert result.exit_code == 2, result.output
     assert (
         "the base's own wall is 0.5 mm; the printer's least wall is 0.6 mm; give given.wall_thickness_mm (--wall)"

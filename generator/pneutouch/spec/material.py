@@ -360,6 +360,11 @@ class Material(SparseTable):
         return len(self.base_resins) > 1
 
     @property
+    def is_uncoded(self) -> bool:
+        """True for a mix by fractions, constant or graded, which no machine offers by a code."""
+        return bool(self.curves) or self.along is not None
+
+    @property
     def label(self) -> str:
         """Title with the base resins, without which a digital material's code is ambiguous."""
         return f"{self.title} ({' + '.join(self.base_resins)})" if self.is_digital else self.title

@@ -193,11 +193,16 @@ class Printer(SparseTable):
         return self.envelope_mm
 
     def mode_for(self, *materials: Material) -> Mode | None:
-        """The finest mode that makes the materials in one job, else None; casting needs a table [casting] of each."""
+        """The finest mode that makes the materials in one job, else None.
+
+        Casting needs a table [casting] of each material; a mix that no machine has a code for needs voxel print.
+        """
         if self.is_casting and not all(material.is_cast for material in materials):
             return None
         resins = {resin for material in materials for resin in material.base_resins}
         if not resins <= set(self.resins) or len(resins) > self.resins_at_once:
+            return None
+        if self.voxel_print is None and any(material.is_uncoded for material in materials):
             return None
         mixed = any(material.is_digital for material in materials)
         modes = [

@@ -248,12 +248,7 @@ def _of_mixing(
     for pair in dict.fromkeys(options.mixing):
         for blend in blends(pair, library):
             if printer.mode_for(blend.material) is None:
-                raise InputError(
-                    f"the {printer.title} cannot run {blend.material.label}",
-                    key="mixing",
-                    value=pair,
-                    remedy=f"it runs {', '.join(printer.resins)}",
-                )
+                raise cannot_run(printer, None, blend.material, library, "`profile`", key="mixing", value=pair)
             items += [
                 CouponItem(
                     coupon,

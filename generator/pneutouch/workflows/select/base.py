@@ -68,11 +68,11 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     ``named`` is True if the user named the pair."""
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
-    if printer.mode_for(pair.material(pair.grade(0.5 * pair.law.wall_top))) is None:
-        remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
+    middle = pair.material(pair.grade(0.5 * pair.law.wall_top))
+    if printer.mode_for(middle) is None:
         raise InputError(
             f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix {soft} "
-            f"with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {remedy}",
+            f"with {stiff} by fractions; {made_by(middle, library, '`profile`')}",
             file=where,
             fields=["given.mix"],
         )
