@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.subject import subject_of
+from pneutouch.parts import assemble
 from pneutouch.printability import PrintSubject
 from pneutouch.printability.estimate import estimate
 from tests.printability.gallery import box, item, printer
@@ -74,3 +80,20 @@ def test_bodies_of_one_job_are_one_estimate_and_it_is_json():
     assert job.size_mm == (10, 10, 20)
     assert [entry.name for entry in job.items] == ["a", "b"]
     assert job.support_mL == 0.0
+
+
+@pytest.mark.parametrize("seat", ["glued-flange", "clamped-flange-M2"])
+@pytest.mark.parametrize("port", ["barb-4x2.5", "push-in-4", "thread-M5", "luer-female"])
+def test_a_filament_connector_stands_on_its_seat_and_needs_little_support(seat, port):
+    """Seat up it would stand on the few mm2 of its port, under 1,500 mm2 of ceiling."""
+    assembly = assemble(load_scene("paper-dome", {"connector.seat": seat, "connector.port": port}))
+    assert not assembly.stands_up("connector")
+    turned = subject_of(assembly)
+    upright = replace(turned, items=tuple(replace(item, up=(0.0, 0.0, 1.0)) for item in turned.items))
+    needed, other = ({job.job: job.support_mL for job in estimate(each)} for each in (turned, upright))
+    assert needed["connector"] < 0.7 * other["connector"]
+    body = next(body for body in assembly.bodies if body.name == "connector")
+    corners = body.vertices[body.triangles]
+    flat = corners[corners[:, :, 2].min(axis=1) > body.bounds[1][2] - 1e-6]
+    on_bed = 0.5 * np.linalg.norm(np.cross(flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]), axis=1).sum()
+    assert on_bed > 200.0

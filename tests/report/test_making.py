@@ -14,7 +14,7 @@ from tests.conftest import ROOT
 def steps(name, changes=None):
     assembly = assemble(load_scene(name, changes))
     pour = None if assembly.mould is None else silicone_batch(assembly.mould)
-    return pour, making(assembly.scene, pour)
+    return pour, making(assembly, pour)
 
 
 def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
@@ -84,7 +84,7 @@ def printed(process, folder, changes=None, facts=""):
     (folder / "printprofiles" / "own.toml").write_text(text.replace(f'["{rigid}"]', f'["OwnSoft", "{rigid}"]'))
     made = {"print.profile": "own", "print.connector_profile": "own", "connector.material": rigid}
     made = {**made, "membrane.material": "OwnSoft", **(changes or {})}
-    return making(load_scene("paper-dome", made, Library((folder, ROOT))))
+    return making(assemble(load_scene("paper-dome", made, Library((folder, ROOT)))))
 
 
 @pytest.mark.parametrize("orientation", ["dome-up", "dome-down"])

@@ -19,6 +19,7 @@ from tests.refusals import refused
 FILES = {
     "paper-dome.3mf",
     "jobs/paper-dome-connector.3mf",
+    "jobs/paper-dome-connector.ini",
     "jobs/paper-dome-membrane.3mf",
     "stl/membrane.stl",
     "stl/connector.stl",

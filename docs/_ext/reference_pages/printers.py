@@ -81,7 +81,7 @@ def _values(of: Table) -> str:
     """The numbers of a table with one source."""
     given = {key: getattr(of, key) for key in type(of).model_fields if key != "source"}
     numbers = (f"{key} {value:g}" for key, value in given.items() if isinstance(value, int | float))
-    return ", ".join(numbers) or "; ".join(f"{key}: {value}" for key, value in given.items() if value is not None)
+    return ", ".join(numbers) or "; ".join(f"{key}: {value}" for key, value in given.items() if value)
 
 
 def _compared(name: str, printer: Printer) -> tuple[str, ...]:

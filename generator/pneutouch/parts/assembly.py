@@ -29,6 +29,15 @@ _MARGIN = 1.0
 """Distance in mm of the bodies from the coordinate planes of the print frame, so that all coordinates are positive."""
 
 
+def _under_ceilings(body: Body, up: float) -> float:
+    """Space in mm3 between the bed and faces that overhang by more than 45 degrees; ``up`` 1, or -1 if turned over."""
+    corners = body.vertices[body.triangles]
+    areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    height, downwards = up * corners[:, :, 2].mean(axis=1), -up * areas[:, 2]
+    steep = downwards > math.sqrt(0.5) * np.linalg.norm(areas, axis=1)
+    return float(np.sum((downwards * (height - np.min(up * body.vertices[:, 2])))[steep]))
+
+
 @dataclass(frozen=True)
 class Assembly:
     """A scene laid out in the design frame (base plane z = 0), its solids and their meshes."""
@@ -79,9 +88,16 @@ class Assembly:
         return "one piece" if grown else name
 
     def stands_up(self, name: str) -> bool:
-        """True if the body of this name is printed as it stands in the design frame, False if turned over."""
-        down = self.scene.design.print.orientation == "dome-down"
-        return not (down and self.job(name) == self.job("membrane"))
+        """True if the body of this name is printed as it stands in the design frame, False if turned over.
+
+        The design says it for the membrane; a rigid body of a filament printer stands as it needs less support.
+        """
+        if self.job(name) == self.job("membrane"):
+            return self.scene.design.print.orientation == "dome-up"
+        if self.machine(name)[0].process != "filament":
+            return True
+        body = next(body for body in self.bodies if body.name == name)
+        return _under_ceilings(body, 1.0) <= _under_ceilings(body, -1.0)
 
     @cached_property
     def print_offset(self) -> Array:

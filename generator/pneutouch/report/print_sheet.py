@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.parts import Assembly
 from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.parts.mould.assembly import SiliconeBatch
 from pneutouch.report.mould import mould_rows
@@ -13,9 +14,10 @@ from pneutouch.units import ML
 from pneutouch.wording import counted
 
 
-def making(scene: ResolvedDesign, pour: SiliconeBatch | None = None) -> list[str]:
+def making(assembly: Assembly, pour: SiliconeBatch | None = None) -> list[str]:
     """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None."""
-    text = filled("making.j2", scene=scene, pour=pour, glue=glue_of(scene), glues=GLUES)
+    scene = assembly.scene
+    text = filled("making.j2", scene=scene, stands=assembly.stands_up, pour=pour, glue=glue_of(scene), glues=GLUES)
     return [line for line in text.splitlines() if line]
 
 
@@ -77,7 +79,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
             (body, mould.counts[body.name], solid.mass) for body, solid in zip(mould.printed, mould.solids, strict=True)
         ],
         facts=[] if mould is None else mould_rows(mould),
-        steps=making(scene, sheet.pour),
+        steps=making(assembly, sheet.pour),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,

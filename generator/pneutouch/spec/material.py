@@ -64,9 +64,13 @@ class MakingFacts(Table):
     """[making] of a printer or a material, in words for the sheet; one left out is said there to be unknown."""
 
     settings: str | None = Field(default=None, min_length=3, description="Settings of the machine or its slicer.")
+    software: str | None = Field(default=None, min_length=3, description="Program of the machine and files it reads.")
     cleaning: str | None = Field(default=None, min_length=3, description="Baths, time and drying.")
     curing: str | None = Field(default=None, min_length=3, description="Post-cure: light, temperature, time.")
     airtightness: str | None = Field(default=None, min_length=3, description="What makes its walls hold air.")
+    slicer: dict[str, float | str] = Field(
+        default={}, description="Settings of PrusaSlicer by its own names; filament."
+    )
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
 

@@ -34,8 +34,10 @@ from pneutouch.report.print_sheet import print_sheet
 from pneutouch.results.folder import BodyMesh, MouldRecord, SiliconeRecord
 from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes
-from pneutouch.units import ML
+from pneutouch.units import ML, UM
 from pneutouch.wording import data_of, enumerated
 
 StepReport = Callable[[str], None]
@@ -84,7 +86,9 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     files |= datasheet(sheet)
     if sheet.pressed is not None:
         files |= pressed_files(sheet.pressed, scene.name)
-    files["print-sheet.md"] = print_sheet(sheet, sorted(jobs), left_out).encode()
+    files["print-sheet.md"] = print_sheet(
+        sheet, [name for name in sorted(jobs) if name.endswith(".3mf")], left_out
+    ).encode()
     progress("files")
     made = with_manifest(
         files,
@@ -123,7 +127,22 @@ def job_files(evaluation: Evaluation) -> dict[str, bytes]:
         machine = assembly.machine(bodies[0].name)[0].title
         about = {"Description": f"Print job of {scene.name}: {names}, as it lies on the bed of the {machine}"}
         files[f"{_JOB_FOLDER}/{name}.3mf"] = threemf_tray(name, [item], {**shared, **about})
+        settings = _slicer(*assembly.machine(bodies[0].name), assembly.solid(bodies[0].name).material)
+        if settings:
+            files[f"{_JOB_FOLDER}/{name}.ini"] = settings.encode()
     return files
+
+
+def _slicer(printer: Printer, mode: Mode, material: Material) -> str:
+    """Settings of PrusaSlicer as lines ``key = value``, the material's over the printer's; empty if none is stated."""
+    facts = [one.making.slicer for one in (printer, material) if one.making is not None]
+    settings = {key: value for one in facts for key, value in one.items()}
+    if settings:
+        settings["layer_height"] = UM * mode.layer_um
+    return "".join(
+        f"{key} = {value if isinstance(value, str) else format(value, 'g')}\n"
+        for key, value in sorted(settings.items())
+    )
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
