@@ -5,8 +5,10 @@ import re
 import pytest
 
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.export import templates
 from pneutouch.parts import assemble
 from pneutouch.parts.mould import silicone_batch
+from pneutouch.report.pages import TEMPLATES
 from pneutouch.report.print_sheet import making, making_title
 from tests.conftest import ROOT
 
@@ -139,3 +141,21 @@ def test_a_mix_is_printed_from_its_stack_and_a_digital_material_by_its_code():
     assert any("--voxels" in line and "graded-dome-voxels" in line for line in mixed)
     _, coded = steps("fingertip-dome")
     assert any("FLX9940" in line for line in coded) and not any("--voxels" in line for line in coded)
+
+
+@pytest.mark.parametrize("mount", sorted(Library((ROOT,)).all("mounts", object)))
+@pytest.mark.parametrize("port", ["barb-4x2.5", "push-in-4", "thread-M5", "luer-female"])
+def test_every_drill_and_tap_of_the_steps_is_among_the_tools(port, mount):
+    changes = {"connector.port": port, "connector.mount": mount, "connector.seat": "clamped-flange-M2"}
+    assembly = assemble(load_scene("cast-dome", changes))
+    lines = making(assembly, silicone_batch(assembly.mould))
+    line = next(line for line in lines if line.startswith("Drilling"))
+    hardware = templates(TEMPLATES, autoescape=False).get_template("hardware.j2").make_module({"scene": assembly.scene})
+    drilled = {float(size) for size in re.findall(r"to ([\d.]+) mm", line)}
+    assert drilled == set(hardware.drills)
+    tapped = set(re.findall(r"tap (M\d+(?: x \d\.\d+)?)", line))
+    assert tapped == set(hardware.taps)
+    # The screw's thread fits into its blind hole, and is at least its own diameter long in it.
+    seat = assembly.scene.seat
+    grip = seat.ring_thickness + (1 - seat.squeeze) * assembly.layout.flange_thickness
+    assert 2.0 <= hardware.screw_mm - grip <= seat.core_depth

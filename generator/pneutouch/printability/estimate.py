@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 
-from pneutouch.printability.measure.cavities import grown, overhangs, supported
+from pneutouch.printability.measure.cavities import overhangs, supported
+from pneutouch.printability.measure.joined import grown
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintJob, PrintPart, PrintView
 from pneutouch.results.printing import ItemEstimate, JobEstimate

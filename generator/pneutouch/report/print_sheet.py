@@ -83,6 +83,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
+        glue=GLUES[glue].title if (glue := glue_of(scene)) else "a flexible adhesive that wets both materials",
     )
 
 
