@@ -13,7 +13,7 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.subject import made_of
 from pneutouch.printability.estimate import estimate
-from pneutouch.workflows.build import job_files
+from pneutouch.workflows.build import job_files, mould_files
 
 pytestmark = [
     pytest.mark.slow,
@@ -52,6 +52,17 @@ def laid(path, settings):
     return volumes, seconds / 60
 
 
+def sliced(model, kind, settings, folder):
+    """What `laid` finds in a file sliced with settings."""
+    source, config, gcode = folder / f"job.{kind}", folder / "job.ini", folder / "job.gcode"
+    source.write_bytes(model)
+    config.write_bytes(settings)
+    words = ["prusa-slicer", "--export-gcode", "--load", config, "--output", gcode, source]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return laid(gcode, settings.decode())
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_every_filament_job_is_sliced_and_takes_what_is_stated(case, tmp_path):
     evaluation = evaluate("paper-dome", CASES[case])
@@ -60,13 +71,7 @@ def test_every_filament_job_is_sliced_and_takes_what_is_stated(case, tmp_path):
     configured = [name for name in files if name.endswith(".ini")]
     assert len(configured) == len([job for job in stated.values() if "filament" in job.printer])
     for name in configured:
-        model, config, gcode = tmp_path / "job.3mf", tmp_path / "job.ini", tmp_path / "job.gcode"
-        model.write_bytes(files[name.replace(".ini", ".3mf")])
-        config.write_bytes(files[name])
-        words = ["prusa-slicer", "--export-gcode", "--load", config, "--output", gcode, model]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        volumes, minutes = laid(gcode, config.read_text())
+        volumes, minutes = sliced(files[name.replace(".ini", ".3mf")], "3mf", files[name], tmp_path)
         support = volumes.pop("Support", 0.0)
         volumes.pop("Skirt/Brim", None)
         job = stated[name.removesuffix(".ini")]
@@ -74,3 +79,16 @@ def test_every_filament_job_is_sliced_and_takes_what_is_stated(case, tmp_path):
         assert job.support_mL == pytest.approx(support, rel=0.25, abs=0.13)
         # Short outlines of a small ring are slower than a rate by volume tells.
         assert job.job == "ring" or job.time_min == pytest.approx(minutes, rel=0.25)
+
+
+def test_a_mould_with_infill_takes_what_is_stated(tmp_path):
+    evaluation = evaluate("cast-dome", {"mould.cavities": 3})
+    mould = evaluation.assembly.mould
+    stated = {job.job: job for job in estimate(made_of(evaluation.assembly))}
+    files, _ = mould_files(mould)
+    for body in mould.printed:
+        volumes, minutes = sliced(files[f"mould/{body.name}.stl"], "stl", files["mould/cast-dome-mould.ini"], tmp_path)
+        volumes.pop("Skirt/Brim", None)
+        job = stated[body.name]
+        assert sum(job.resins_mL.values()) == pytest.approx(volumes.total(), rel=0.25, abs=0.1)
+        assert job.time_min == pytest.approx(minutes, rel=0.25, abs=4.0)

@@ -20,6 +20,9 @@ of a loop around it and thickness in mm of the dense layers under a ceiling, as 
 
 _SUPPORT = f"{_SPARSE:.0%} filled, a loop around it, dense under ceilings, as PrusaSlicer's default settings do"
 
+_OUTLINES = 1.35
+"""Thickness in mm of three outlines, 0.45 mm each, behind which a part may have infill."""
+
 _PURGE = "waste of purging, wiping and the first layers is left out"
 
 
@@ -88,13 +91,16 @@ def _job(
 
 def _item(part: PrintPart) -> ItemEstimate:
     body, solid = part.item.body, part.item.solid
-    volume = body.volume if solid is None else float(solid.volume)
+    volume, corners = body.volume if solid is None else float(solid.volume), body.vertices[body.triangles]
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    shell = min(volume, 0.5 * _OUTLINES * float(np.linalg.norm(sides, axis=1).sum()))
+    laid = shell + part.item.infill * (volume - shell)
     material = body.material
     mix = material.mix
     # Without a measured mix only the sum of a digital material's resins is known.
     shares = {" + ".join(material.base_resins): 1.0} if mix is None else mix.fractions
-    resins_mL = {name: share * volume / ML for name, share in sorted(shares.items())}
-    return ItemEstimate(part.name, volume / ML, grams(volume, material.density_g_per_cm3.nominal), resins_mL)
+    resins_mL = {name: share * laid / ML for name, share in sorted(shares.items())}
+    return ItemEstimate(part.name, volume / ML, grams(laid, material.density_g_per_cm3.nominal), resins_mL)
 
 
 def _support(job: PrintJob) -> tuple[float, str]:
@@ -135,9 +141,9 @@ def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> 
     rate = item.printer.deposition_mm3_per_s
     if layer is None or rate is None:
         return None, ["time: the printer's profile gives no layer_seconds or no deposition_mm3_per_s"]
-    volume = support + sum(part.item.body.volume for part in job.parts)
+    volume = support + ML * sum(sum(_item(part).resins_mL.values()) for part in job.parts)
     text = (
         f"time: {volume:.0f} mm3 at {rate.nominal:g} mm3/s ({rate.source}) and {layers} layers x {layer.nominal:g} s "
-        f"({layer.source}); solid throughout"
+        f"({layer.source}); {'solid' if item.infill == 1 else f'{item.infill:.0%} infill'}"
     )
     return volume / rate.nominal + layers * layer.nominal, [text]

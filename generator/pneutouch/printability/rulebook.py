@@ -71,12 +71,17 @@ _LEFT_TO_RAYS = ("edges", "mesh")
 """Printing rules of which only errors count for a mould: it has sharp edges, and rays measure its meshes."""
 
 
+MOULD_INFILL = 0.2
+"""Infill of a mould, which bears the pressure of a syringe by hand: PrusaSlicer's preset *common*."""
+
+
 def mould_subject(mould: MouldAssembly) -> PrintSubject:
     """The parts of a mould as they are printed, each a job of its own; the cap lies with its pockets up."""
     items = []
     for body, solid in zip(mould.bodies, mould.solids, strict=True):
         up = (0.0, 0.0, -1.0 if solid.name == "mould-cap" else 1.0)
-        items.append(PrintItem(body, mould.printer, mould.mode, solid, up=up, hints=_HINTS))
+        infill = MOULD_INFILL if mould.printer.process == "filament" else 1.0
+        items.append(PrintItem(body, mould.printer, mould.mode, solid, up=up, hints=_HINTS, infill=infill))
     return PrintSubject(tuple(items), name=f"{mould.scene.name}-mould")
 
 

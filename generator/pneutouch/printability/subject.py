@@ -50,7 +50,8 @@ class PrintItem:
     ``solid`` is its exact shape, if there is one. ``up`` is the build direction in the body's frame. Items with the
     same ``job`` are printed together, placed as in the design frame; "" is a job of its own. ``sensing`` selects the
     points, of (n, 3) on the surface, that must not be matte. ``hints`` states, by the name of a rule, the change of the
-    design that would fix its finding. ``insert`` is a body around which this one is cast: it fills its openings.
+    design that would fix its finding. ``insert`` is a body around which this one is cast: it fills its openings. Of
+    what lies behind the outlines a filament printer fills the share ``infill``.
     """
 
     body: Body
@@ -62,6 +63,7 @@ class PrintItem:
     sensing: Callable[[Array], Flags] | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
     insert: ExactShape | None = None
+    infill: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
     file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = assembly.glue_volume / ML
+    masses = {item.name: item.mass_g for job in sheet.estimates for item in job.items}
     return filled(
         "print-sheet.md.j2",
         sheet=sheet,
@@ -73,11 +74,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         left_out=left_out,
         deviation=max(assembly.deviation(body) for body in assembly.bodies),
         calibration=scene.calibration,
-        parts=[]
-        if mould is None
-        else [
-            (body, mould.counts[body.name], solid.mass) for body, solid in zip(mould.printed, mould.solids, strict=True)
-        ],
+        parts=[] if mould is None else [(body, mould.counts[body.name], masses[body.name]) for body in mould.printed],
         facts=[] if mould is None else mould_rows(mould),
         steps=making(assembly, sheet.pour),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],

@@ -86,7 +86,7 @@ class ItemEstimate:
     volume_mL: float
     """Volume of the body."""
     mass_g: float
-    """Mass of the body."""
+    """Mass of the body, with its infill."""
     resins_mL: Mapping[str, float]
     """Resins by name; those of a digital material without a measured mix together."""
 

@@ -27,6 +27,7 @@ from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.printability import refuse
+from pneutouch.printability.rulebook import MOULD_INFILL
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.mould import mould_section
 from pneutouch.report.pictures import picture, pressed_files, shown
@@ -127,22 +128,20 @@ def job_files(evaluation: Evaluation) -> dict[str, bytes]:
         machine = assembly.machine(bodies[0].name)[0].title
         about = {"Description": f"Print job of {scene.name}: {names}, as it lies on the bed of the {machine}"}
         files[f"{_JOB_FOLDER}/{name}.3mf"] = threemf_tray(name, [item], {**shared, **about})
-        settings = _slicer(*assembly.machine(bodies[0].name), assembly.solid(bodies[0].name).material)
-        if settings:
-            files[f"{_JOB_FOLDER}/{name}.ini"] = settings.encode()
+        material = assembly.solid(bodies[0].name).material
+        files |= _slicer(f"{_JOB_FOLDER}/{name}", *assembly.machine(bodies[0].name), material)
     return files
 
 
-def _slicer(printer: Printer, mode: Mode, material: Material) -> str:
-    """Settings of PrusaSlicer as lines ``key = value``, the material's over the printer's; empty if none is stated."""
+def _slicer(path: str, printer: Printer, mode: Mode, material: Material, infill: str | None = None) -> dict[str, bytes]:
+    """Settings of PrusaSlicer as a file ``path``.ini, the material's over the printer's; none if they state none."""
     facts = [one.making.slicer for one in (printer, material) if one.making is not None]
     settings = {key: value for one in facts for key, value in one.items()}
-    if settings:
-        settings["layer_height"] = UM * mode.layer_um
-    return "".join(
-        f"{key} = {value if isinstance(value, str) else format(value, 'g')}\n"
-        for key, value in sorted(settings.items())
-    )
+    if not settings:
+        return {}
+    settings |= {"layer_height": UM * mode.layer_um} | ({} if infill is None else {"fill_density": infill})
+    lines = (f"{key} = {value if isinstance(value, str) else format(value, 'g')}\n" for key, value in settings.items())
+    return {f"{path}.ini": "".join(sorted(lines)).encode()}
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
@@ -222,6 +221,7 @@ def mould_files(mould: MouldAssembly) -> tuple[dict[str, bytes], dict[str, str]]
         files[f"{_MOULD_FOLDER}/{numbered}.3mf"] = threemf_tray(
             numbered, items, _mould_metadata(mould, k + 1, len(plates))
         )
+    files |= _slicer(f"{_MOULD_FOLDER}/{name}", mould.printer, mould.mode, mould.material, f"{MOULD_INFILL:.0%}")
     files[f"{_MOULD_FOLDER}/{name}.glb"] = glb(exploded(mould))
     files[f"{_MOULD_FOLDER}/{name}.svg"] = mould_section(mould).encode()
     exact, left_out = step_files(name, mould.solids, mould.print_offset)
