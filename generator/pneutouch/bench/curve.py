@@ -39,10 +39,11 @@ LOADING_POINTS = 25
 
 _BEYOND_TRAVEL = 1.05
 
-_LAG_COUNTS, _EARLY, _GOES_ON, _AT_END = 0.01, 0.2, 0.004, 0.1
+_LAG_COUNTS, _EARLY, _GOES_ON, _AT_END, _STEEP = 0.01, 0.2, 0.004, 0.1, 10
 """Change of a channel at its steepest over a lag, as a share of its span, or of a figure, from which on a lag is asked
 about; least lead in s of a pressure that is asked about whatever its figures, as a leak leads too; shares of its span
-by which a force grows in a stay of a coarse travel, and of a stage at its end: our choice."""
+by which a force grows in a stay of a coarse travel, and of a stage at its end; most blocks over which a channel's
+steepest way is taken: our choice."""
 
 
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
@@ -138,7 +139,10 @@ def _lagging(
     if lag < step:
         return []
     values, count = getattr(blocks, "pressure" if key == "pressure" else "force"), round(lag / step)
-    way = float(np.ptp([values[count:], values[:-count]], axis=0).max(initial=0.0)) / max(float(np.ptp(values)), 1e-300)
+    # Over a short time, as in a long one a press may be over.
+    over = min(count, _STEEP)
+    way = float(np.ptp([values[over:], values[:-over]], axis=0).max(initial=0.0)) / max(float(np.ptp(values)), 1e-300)
+    way *= count / max(over, 1)
     if not alone or run.kind == "hand" or count < 2 or way < _LAG_COUNTS:
         in_time = {
             of: np.interp(blocks.time + by * lag, blocks.time, getattr(blocks, of))
@@ -149,11 +153,11 @@ def _lagging(
             return []
         way = max(way, changed)
     comes = "come" if key == "force and pressure" else "comes"
-    why = f"the {key} {comes} {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it?"
-    # Between stays a plate may go far in so short a time; the readings at the stays are right then.
-    if way < 0.5:
-        why += f" Take that out, or press {math.ceil(1.5 * way / _LAG_COUNTS)} times slower"
-    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
+    why = (
+        f"the {key} {comes} {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it? Shift "
+        f"the column by that, or press {math.ceil(1.5 * way / _LAG_COUNTS)} times slower"
+    )
+    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "late")]
 
 
 def _changed(run: CampaignRun, blocks: Blocks, points: Points, *, steps: bool) -> float:

@@ -50,6 +50,10 @@ LONG = 5.0
 """Seconds above which a stay at one depth, if also longer than the way in, is a relaxation: our choice."""
 
 
+_LATEST, _ALIKE, _COMPARED = 2.0, 0.05, 4000
+"""Longest time in s by which a channel is tried to come early or late, least gain in its correlation with the travel by
+which it does, and most blocks that are compared: our choice."""
+
 _RESTS, _GOES_ON, _CONCAVE = 0.01, 0.05, 0.6
 """Share of a channel's span within which it rests, of another's by which that goes on then, and of its rise that it has
 at half of the first one's: our choice."""
@@ -157,12 +161,33 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
     if min(low.size, high.size) < 3:
         return
     if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
+        if lag := rough_lag(blocks, "force"):
+            first, then = ("travel", "force") if lag > 0 else ("force", "travel")
+            raise InputError(
+                f"the {then} comes {abs(lag):.2g} s after the {first}: a filter, a slow gauge or another clock delays it",
+                file=blocks.file,
+                remedy="shift the column by that, or press much slower",
+            )
         raise InputError(
             f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
             f"({place.max():.4g} mm)",
             file=blocks.file,
             remedy=f"position must count into the sensor: {otherwise(blocks.columns, 'position')}",
         )
+
+
+def rough_lag(blocks: Blocks, key: str) -> float:
+    """Time in s by which a channel follows the travel, to a few hundredths, where it is clearly more like it then than
+    as read or with the other sign; else 0."""
+    some = slice(None, None, max(blocks.time.size // _COMPARED, 1))
+    time, place, values = blocks.time[some], blocks.position[some], getattr(blocks, key)[some]
+    if min(np.ptp(place), np.ptp(values)) <= 0:
+        return 0.0
+    lags = np.linspace(-_LATEST, _LATEST, 81)
+    alike = np.array([np.corrcoef(np.interp(time + lag, time, values), place)[0, 1] for lag in lags])
+    # Of cycles the nearest.
+    best = int(np.argmax(alike - _ALIKE * np.abs(lags)))
+    return float(lags[best]) if alike[best] > _ALIKE + abs(np.corrcoef(values, place)[0, 1]) else 0.0
 
 
 def _turns(place: Array, least: float) -> list[tuple[int, bool]]:

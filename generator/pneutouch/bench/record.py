@@ -11,14 +11,15 @@ from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, RunKind
 
-SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "other"]
+SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "late", "other"]
 
 
 class SuspectInterval(NamedTuple):
     """Time interval (s) of a run that may be wrong, and the reason.
 
     ``used``: True if its data are used nevertheless. ``kind``: a gap, a channel at the end of its range (clipped), a
-    reading beyond that (spike), a usual defect (note), a doubt to ask about (asked), or another."""
+    reading beyond that (spike), a usual defect (note), a doubt to ask about (asked), a channel behind another (late), or
+    another."""
 
     start: float
     end: float
@@ -124,6 +125,11 @@ class MeasuredCurve:
     shows: RunKind = "steps"
     told: bool = False
     warnings: tuple[SuspectInterval, ...] = field(default=())
+
+    @property
+    def late(self) -> str | None:
+        """Question on a channel that comes behind another; None if none does."""
+        return next((warning.why for warning in self.warnings if warning.kind == "late"), None)
 
 
 def stretches(mask: Flags) -> list[tuple[int, int]]:

@@ -77,12 +77,22 @@ class ExpectedRun:
 def check_plausible(
     curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
 ) -> tuple[str, ...]:
-    """Questions about a run that may nevertheless be correct and is used.
+    """Questions about a run that may nevertheless be correct and is used; where a channel is late, that question alone.
 
     Without a prediction (``expected`` None) only the record itself is checked: signs, times, driving pressure. Raises
     InputError for the impossible: a wrong sign, force and pressure swapped, a record begun inside the dome, a magnitude
     off by more than `FAR` and right in another unit (above `BEYOND`: within `FAR` in another unit), a pressure before
     contact `DRIVING_FAR` times as far from the driving pressure as a reset leaves it (a question if below zero)."""
+    try:
+        questions = _questions(curve, columns, expected, file)
+    except InputError:
+        if curve.late is None:
+            raise
+        raise InputError(f"{curve.late}, as it cannot be used", file=file) from None
+    return questions if curve.late is None else (curve.late,)
+
+
+def _questions(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path) -> tuple[str, ...]:
     _check_signs(curve, columns, file)
     by_hand = curve.run.kind == "hand"
     if expected is not None and not by_hand:

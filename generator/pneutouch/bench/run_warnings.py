@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from pneutouch.arrays import Index
-from pneutouch.bench.excursions import NEAR, Excursion
+from pneutouch.bench.excursions import NEAR, Excursion, rough_lag
 from pneutouch.bench.first_contact import COARSE, Baseline, baseline, step_share
 from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, read_window
 from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation, SuspectInterval, SuspectKind, stretches
@@ -246,10 +246,11 @@ def behind(blocks: Blocks, indentations: RunIndentations, key: str) -> float:
 
     The area of y(t - lag) over x is -lag times the integral of y' x', for a short lag. A wall that relaxes, a leak and
     warmed gas all make a channel lead; a drift from before to after a press is taken out."""
-    time, place, lag = blocks.time, blocks.position, 0.0
+    time, place, lag = blocks.time, blocks.position, rough_lag(blocks, key)
     clear = [*sorted({one.clear for one in indentations.parts}), (0, time.size)]
+    sign = -1 if np.interp(time + lag, time, getattr(blocks, key)) @ (place - place.mean()) < 0 else 1
     for _ in range(_TRIES):
-        values = np.interp(time + lag, time, getattr(blocks, key))
+        values = sign * np.interp(time + lag, time, getattr(blocks, key))
         area = speeds = 0.0
         for (start, _), (_, out) in itertools.pairwise(clear):
             x, t, y = place[start:out], time[start:out], values[start:out]

@@ -88,6 +88,27 @@ def test_a_delay_that_spoils_a_figure_is_asked_about_and_goes_in_a_press_as_slow
         assert found[key].value == pytest.approx(value[key] if not kept else 2.338, rel=0.02), key
 
 
+@pytest.mark.parametrize("row", [1, 2, 3])
+@pytest.mark.parametrize("seconds", [0.3, 1.0])
+@pytest.mark.parametrize("legs", [[(2.0, CLEAR), (1.5, DEEP), (1.5, CLEAR), (2.0, CLEAR)], READ["steps"].legs])
+def test_a_great_delay_is_told_as_one_and_goes_where_its_column_is_shifted_as_told(row, seconds, legs, tmp_path):
+    """Of a quick press it makes a wrong unit, sign, driving pressure or begin inside the dome."""
+    try:
+        measured = read(tmp_path, Recording(legs, spoil=late(row, seconds)))
+        messages = [entry.question for entry in measured.questions] + [entry.message for entry in measured.failures]
+    except InputError as refused:
+        messages = [str(refused)]
+    (message,) = messages
+    channel = ("travel", "force", "pressure")[row - 1]
+    told = float(re.findall(rf"the {channel} comes ([\d.]+) s after", message)[0])
+    assert told == pytest.approx(seconds, abs=0.005)
+    measured = read(tmp_path, Recording(legs, spoil=lambda s: late(row, -told)(late(row, seconds)(s))))
+    found, at = figures(measured), depths() if len(legs) > 4 else depths(25)
+    assert not asked(measured, "s after the")
+    for key, value in true_figures(at).items():
+        assert found[key].value == pytest.approx(value, rel=0.02), key
+
+
 def test_a_wall_that_relaxes_is_not_taken_for_a_delay(tmp_path):
     """Its force is greater on the way in than on the way out, and its pressure is not."""
 

@@ -165,7 +165,8 @@ def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str],
         for key, why in _EXPLAINED.items():
             _, low, high = comparison.predicted.get(key, (math.nan, None, None))
             measured = group.figures.get(key)
-            if measured is None or low is None or high is None or low <= measured.value <= high:
+            late = any(curve.late for curve in group.lined)
+            if late or measured is None or low is None or high is None or low <= measured.value <= high:
                 continue
             figure = BY_KEY[key]
             problem = (
