@@ -154,8 +154,8 @@ def _lagging(
         way = max(way, changed)
     comes = "come" if key == "force and pressure" else "comes"
     why = (
-        f"the {key} {comes} {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it? Shift "
-        f"the column by that, or press {math.ceil(1.5 * way / _LAG_COUNTS)} times slower"
+        f"the {key} {comes} {lag:.2g} s after the {first}: does a filter, a slow gauge or another clock delay it? "
+        f"Shift the column by that, or press {math.ceil(1.5 * way / _LAG_COUNTS)} times slower"
     )
     return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "late")]
 

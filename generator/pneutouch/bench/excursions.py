@@ -164,7 +164,7 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
         if lag := rough_lag(blocks, "force"):
             first, then = ("travel", "force") if lag > 0 else ("force", "travel")
             raise InputError(
-                f"the {then} comes {abs(lag):.2g} s after the {first}: a filter, a slow gauge or another clock delays it",
+                f"the {then} comes {abs(lag):.2g} s after the {first}: a filter, slow gauge or other clock delays it",
                 file=blocks.file,
                 remedy="shift the column by that, or press much slower",
             )
