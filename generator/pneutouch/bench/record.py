@@ -18,7 +18,7 @@ class SuspectInterval(NamedTuple):
     """Time interval (s) of a run that may be wrong, and the reason.
 
     ``used``: True if its data are used nevertheless. ``kind``: a gap, a channel at the end of its range (clipped), a
-    reading beyond that (spike), a usual defect (note), a doubt to ask about (asked), a channel that comes late (late), or another."""
+    reading beyond that (spike), a usual defect (note), a doubt to ask about (asked; late: of a channel), or another."""
 
     start: float
     end: float

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -77,33 +78,35 @@ class ExpectedRun:
 def check_plausible(
     curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
 ) -> tuple[str, ...]:
-    """Questions about a run that may nevertheless be correct and is used; where a channel is late, that question alone.
+    """Questions about a run that may nevertheless be correct and is used; where a channel is late, on that and the
+    time alone.
 
     Without a prediction (``expected`` None) only the record itself is checked: signs, times, driving pressure. Raises
     InputError for the impossible: a wrong sign, force and pressure swapped, a record begun inside the dome, a magnitude
     off by more than `FAR` and right in another unit (above `BEYOND`: within `FAR` in another unit), a pressure before
     contact `DRIVING_FAR` times as far from the driving pressure as a reset leaves it (a question if below zero)."""
+    time = None if curve.run.kind == "hand" else _speed(curve, columns)
     try:
         questions = _questions(curve, columns, expected, file)
     except InputError:
         if curve.late is None:
             raise
         raise InputError(f"{curve.late}, as it cannot be used", file=file) from None
-    return questions if curve.late is None else (curve.late,)
+    return tuple(text for text in (time, *(questions if curve.late is None else [curve.late])) if text is not None)
 
 
-def _questions(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path) -> tuple[str, ...]:
+def _questions(
+    curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
+) -> Sequence[str | None]:
     _check_signs(curve, columns, file)
-    by_hand = curve.run.kind == "hand"
-    if expected is not None and not by_hand:
+    magnitudes: list[str | None] = []
+    if expected is not None and curve.run.kind == "hand":
+        magnitudes = [_rise(curve, columns, expected, file)]
+    elif expected is not None:
         _check_start(curve, expected, file)
         _check_swap(curve, columns, expected, file)
-    time = None if by_hand else _speed(curve, columns)
-    magnitudes: list[str | None] = []
-    if expected is not None:
-        magnitudes = [_rise(curve, columns, expected, file)] if by_hand else _magnitudes(curve, columns, expected, file)
-    asked = (*magnitudes, time, _driving(curve, columns, file), *run_questions(curve, columns))
-    return tuple(text for text in asked if text is not None)
+        magnitudes = _magnitudes(curve, columns, expected, file)
+    return *magnitudes, _driving(curve, columns, file), *run_questions(curve, columns)
 
 
 def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> str | None:
