@@ -97,6 +97,8 @@ def read_blocks(
     warnings += [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][
         :cut
     ]
+    if "position" in keys:
+        blocks = replace(blocks, position=blocks.position - rig.compliance_mm_per_N * blocks.force)
     if pressed:
         _check_apart(blocks, columns, keys)
         warnings += _copied(blocks)

@@ -47,6 +47,10 @@ compared; relative distances from the prediction below which it is met and above
 _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
+_YIELDS, _AGREES = 5.0, 1.2
+"""Greatest ratio of predicted to measured force that a rig that yields explains, and of the rise at that force to the
+prediction's, or its inverse: our choice, less than a wrong unit of the force makes of it."""
+
 _SPEEDS = 0.01, 50.0
 """Least and greatest mean speed of a plate going in, mm/s, without a question on the unit of time: our choice."""
 _WAYS, _BENT = 3, 0.05
@@ -179,6 +183,11 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     # Where the travel itself is suspect, the ends are compared.
     reach = min(depth, expected.depth) if questions[0] is None else depth
     force, rise = expected.at(reach if questions[0] is None else expected.depth)
+    reads, rises = (float(np.interp(reach, curve.indentation, values)) for values in (curve.force, curve.rise))
+    # Where force and pressure agree, the travel is greater than the dome's; a stiffness too low is asked about.
+    alike = rises / float(np.interp(reads, expected.force, expected.rise))
+    if force / _YIELDS < reads < force and 1 / _AGREES < alike < _AGREES:
+        return questions
     for key, values, target, unit, name in (
         ("force", curve.force, force, 1.0, "N"),
         ("pressure", curve.rise, rise, KPA, "kPa"),

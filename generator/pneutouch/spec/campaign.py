@@ -116,6 +116,9 @@ class Rig(Table):
     travel_mm: float = number(
         100.0, unit="mm", low=0.1, high=1e4, help="Travel of the stage (Actuonix L16-100: 100 mm)."
     )
+    compliance_mm_per_N: float = number(
+        0.0, unit="mm/N", low=0, high=10, help="Travel by which stage and force sensor yield, subtracted."
+    )
     rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")
 
 

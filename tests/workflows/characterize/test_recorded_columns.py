@@ -75,6 +75,23 @@ def test_milliseconds_under_a_heading_of_seconds_are_asked_about_with_the_unit(n
     assert not asked(read(tmp_path, recording, reading={"columns": parse_columns([text])}), "goes in at")
 
 
+@pytest.mark.parametrize("name", ["triangular", "steps"])
+@pytest.mark.parametrize("compliance", [0.02, 0.05, 0.2])
+def test_a_rig_that_yields_is_asked_about_and_gives_the_truth_where_that_is_stated(name, compliance, tmp_path):
+    """The travel holds that of the stage under the force; the sensitivity does not show it."""
+    yields = replace(READ[name], spoil=lambda s: s + np.array([[0], [compliance], [0], [0]]) * s[2])
+    (question,) = asked(read(tmp_path, yields), "rig.compliance_mm_per_N")
+    told = float(re.findall(r"by ([\d.]+) mm/N", question)[0])
+    assert told == pytest.approx(compliance, rel=0.1)
+    (tmp_path / "campaign.toml").write_text(
+        f'[rig]\ncompliance_mm_per_N = {told}\n[[runs]]\nfile = "run.csv"\nsensor = "A1"\n'
+    )
+    stated = characterize(tmp_path, "paper-dome", model="atlas").figures
+    assert not stated.questions
+    for key, value in true_figures(yields.at()).items():
+        assert figures(stated)[key].value == pytest.approx(value, rel=0.02), key
+
+
 def serial_days(samples, header):
     rows = (",".join([f"{46027.5 + row[0] / 86400:.9f}", *(f"{value:.5f}" for value in row[1:])]) for row in samples.T)
     return header + "\n" + "\n".join(rows) + "\n"

@@ -161,13 +161,15 @@ def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str],
     reasons."""
     questions = []
     for comparison in comparisons:
-        group = comparison.group
+        group, before = comparison.group, len(questions)
         for key, why in _EXPLAINED.items():
             _, low, high = comparison.predicted.get(key, (math.nan, None, None))
             measured = group.figures.get(key)
             late = any(curve.late for curve in group.lined)
             if late or measured is None or low is None or high is None or low <= measured.value <= high:
                 continue
+            if key == STIFFNESS_KEY and measured.value < low and len(questions) == before:
+                why = f"{_yielding(group.lined[0], comparison.state)}; {why}"
             figure = BY_KEY[key]
             problem = (
                 f"{figure.name} {measured.value:.4g} {figure.unit} at {group.key.driving_pressure_kPa:g} kPa is "
@@ -175,6 +177,17 @@ def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str],
             )
             questions.append((group.lined[0].run.file, problem))
     return tuple(questions)
+
+
+def _yielding(curve: MeasuredCurve, state: SensorState | None) -> str:
+    """Compliance of a rig that explains a stiffness too low at the predicted pressure, and its remedy, in words."""
+    assert state is not None
+    reach = min(float(curve.force[-1]), float(state.force[-1]))
+    travels = [np.interp(reach, one.force, one.indentation) for one in (curve, state)]
+    return (
+        f"a rig that yields by {float(travels[0] - travels[1]) / reach:.2g} mm/N, which a press on a rigid block shows "
+        "(state it in campaign.toml as rig.compliance_mm_per_N)"
+    )
 
 
 _EXPLAINED = {
