@@ -43,6 +43,9 @@ distance: about 1 for a stay, 2 for a sine, 4 for a turn at constant speed."""
 _LINGERS = 4.0
 """Least ratio of the time at a stay on the way in to the time at the other places of the way: our choice."""
 
+_AS_LONG = 0.7
+"""Least time at the deep end, as a share of those at the stays before it, that makes it one too: our choice."""
+
 _SCATTERED = 1.5
 """Greatest ratio of blocks from a stay's first to its last to blocks at its depth; above it the plate came twice."""
 
@@ -181,7 +184,8 @@ def rough_lag(blocks: Blocks, key: str) -> float:
     as read or with the other sign; else 0."""
     some = slice(None, None, max(blocks.time.size // _COMPARED, 1))
     time, place, values = blocks.time[some], blocks.position[some], getattr(blocks, key)[some]
-    if min(np.ptp(place), np.ptp(values)) <= 0:
+    # On a way in alone a dome, which stiffens, comes late.
+    if min(np.ptp(place), np.ptp(values)) <= 0 or place[-1] > 0.5 * (place.min() + place.max()):
         return 0.0
     lags = np.linspace(-_LATEST, _LATEST, 81)
     alike = np.array([np.corrcoef(np.interp(time + lag, time, values), place)[0, 1] for lag in lags])
@@ -244,7 +248,9 @@ def _steps(place: Array, one: Excursion, noise: float) -> list[Excursion]:
     start = one.clear[1] - 1
     way = place[start : one.hold[0]]
     holds = [(first + start, last + start) for first, last in _stays(way, float(place[one.hold[0]]), noise)]
-    return [*(one._replace(hold=hold, held=True) for hold in holds), one]
+    # After slow steps a short stay at the deep end looks like a slow turn.
+    long = bool(holds) and one.hold[1] - one.hold[0] >= _AS_LONG * np.median(np.diff(holds))
+    return [*(one._replace(hold=hold, held=True) for hold in holds), one._replace(held=one.held or long)]
 
 
 def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:

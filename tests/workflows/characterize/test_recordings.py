@@ -61,6 +61,37 @@ def test_every_figure_is_that_of_the_truth(name, tmp_path):
     )
 
 
+@pytest.mark.parametrize("hold", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize(("seconds", "count"), [(1.0, 3), (1.0, 13), (0.3, 5)])
+def test_stairs_with_short_stays_are_read_to_the_deepest(hold, seconds, count, tmp_path):
+    """After slow steps a short stay at the deep end looks like a slow turn."""
+    stops = [*depths(count), *depths(count)[-2::-1]]
+    legs = [
+        (3.0, CLEAR),
+        *(leg for stop in stops for leg in ((seconds, stop), (hold, stop))),
+        (0.5, CLEAR),
+        (2.0, CLEAR),
+    ]
+    measured = read(tmp_path, Recording(legs))
+    assert not measured.questions
+    for key, value in true_figures(depths(count)).items():
+        assert figures(measured)[key].value == pytest.approx(value, rel=0.02), key
+
+
+@pytest.mark.parametrize("hold", [0.2, 0.5, 1.0])
+def test_a_press_with_a_short_hold_gives_the_figures_of_its_way_in(hold, tmp_path):
+    measured = read(tmp_path, Recording([(2.0, CLEAR), (1.5, DEEP), (hold, DEEP), (1.5, CLEAR), (2.0, CLEAR)]))
+    assert not measured.questions
+    for key, value in true_figures(depths(25)).items():
+        assert figures(measured)[key].value == pytest.approx(value, rel=0.02), key
+
+
+def test_two_quick_steps_in_alone_are_no_delay(tmp_path):
+    """The dome stiffens, so that its force is more like the travel of a later time."""
+    legs = [(3.0, CLEAR), (0.1, DEEP / 2), (1.0, DEEP / 2), (0.1, DEEP), (1.0, DEEP)]
+    assert not asked(read(tmp_path, Recording(legs)), "s after the")
+
+
 def rounded(force, pressure=None):
     """Channels read in steps of so many N and kPa."""
 
