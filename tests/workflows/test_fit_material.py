@@ -108,6 +108,18 @@ def test_bad_input_is_refused_and_leaves_nothing(command, tmp_path, words, match
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pull.csv"]
 
 
+def test_data_that_no_law_follows_make_no_material(command, tmp_path):
+    """Of two specimens, one twice as stiff, and of one that yields."""
+    write(tmp_path / "soft.csv")
+    write(tmp_path / "stiff.csv", factor=2.5)
+    rows = [f"{a:.6f},{0.1 * (1 - np.exp(-25 * (a - 1))):.8f}" for a in STRETCH]
+    (tmp_path / "yields.csv").write_text("\n".join(["stretch,stress (MPa)", *rows]) + "\n")
+    for files in (["soft.csv", "stiff.csv"], ["yields.csv"]):
+        done = command("fit-material", *files, "--name", "Ours", "--density", "1.03", cwd=tmp_path)
+        assert done.returncode == 2, done.stdout
+    assert not (tmp_path / "outputs").exists()
+
+
 @pytest.mark.parametrize("name", SILICONES)
 def test_the_shipped_silicones_state_their_fit(name):
     material = Library((ROOT,)).load("materials", name)

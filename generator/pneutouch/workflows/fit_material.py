@@ -11,7 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, PuckFit, PuckSize, choose_law, fit_puck
+from pneutouch.bench.tensile.choose import (
+    MISFIT,
+    NEO_HOOKEAN,
+    WORST_MISFIT,
+    LawChoice,
+    PuckFit,
+    PuckSize,
+    choose_law,
+    fit_puck,
+)
 from pneutouch.bench.tensile.law_fit import LawFit, TensionCurve, difference
 from pneutouch.bench.tensile.read import SpecimenSize, read_tension
 from pneutouch.catalogue import KINDS, Library, user_folder
@@ -181,6 +190,13 @@ def fit_material(data: Sequence[Path], options: FitOptions, library: Library | N
         curves = _curves(data, options)
         choice = choose_law(curves, options.stretch_to, options.slack)
         law, neo, largest = choice.law, choice.neo_hookean, choice.largest
+    if law.misfit > WORST_MISFIT:
+        raise InputError(
+            f"no law comes within {100 * WORST_MISFIT:g} % of the stress; {law.form.label} is off by up to "
+            f"{100 * law.misfit:.2g} %, and shipped ones by 1 to 8 %",
+            file=data[0],
+            remedy="were the kind of test, the units and the zeros stated right? Give `stretch_to` to fit less far",
+        )
     fitted = FittedMaterial(tuple(data), options, law, neo, largest, choice, puck, path, "")
     return replace(fitted, text=material_file(fitted, library))
 

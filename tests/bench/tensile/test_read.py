@@ -72,6 +72,14 @@ PRESSED = (0.9078, 0.917, 0.9305, 0.9427, 0.9526)
 """Radius of a cap of the pole's height over the pole's, of that membrane at its stretches."""
 
 
+def test_simple_shear_is_no_planar_tension(tmp_path):
+    sheared = write(tmp_path, "Shear Strain,Shear Stress (MPa)", LAMBDA - 1, STRESS)
+    refused(sheared, "planar")
+    assert read_tension(sheared, kind="planar").kind == "planar"
+    pure = write(tmp_path, "Pure Shear Strain,Stress (MPa)", LAMBDA - 1, STRESS)
+    assert read_tension(pure).kind == "planar"
+
+
 def test_an_inflated_disc_without_its_size_is_refused(tmp_path):
     path = write(tmp_path, "stretch,pressure (kPa),height (mm)", LAMBDA, STRESS, LAMBDA)
     for size in (SpecimenSize(), SpecimenSize(None, None, 1.0)):

@@ -40,8 +40,8 @@ _STRETCHES = ("stretch", "strain")
 _PAIRS = ((_STRETCHES, "stress"), (_STRETCHES, "force"), (("travel",), "force"), (_STRETCHES, "pressure"))
 """Kinds of length column, and the kind of load column that each needs, the best pair first."""
 
-_KINDS = {"biaxial": "equibiaxial", "equibiaxial": "equibiaxial", "planar": "planar", "shear": "planar"}
-"""Kind of test by a word in the name of a column."""
+_KINDS = {"biaxial": "equibiaxial", "equibiaxial": "equibiaxial", "planar": "planar", "pure": "planar"}
+"""Kind of test by a word in the name of a column. Pure shear is planar tension, simple shear is neither."""
 
 NAMES = "Engineering Strain, Engineering Stress (MPa)"
 """Column names that are understood, for messages."""
@@ -207,6 +207,9 @@ def _kind(pair: ColumnPair, given: str | None, file: str) -> str:
     """Kind of test as given or as the columns are named; tension without either. Raises InputError if they differ."""
     words = re.split(r"[\W_]+", f"{pair.length.name} {pair.load.name}".lower())
     named = "equibiaxial" if pair.load.kind == "pressure" else next((_KINDS[w] for w in words if w in _KINDS), None)
+    if given is None and named is None and "shear" in words:
+        remedy = "only planar tension (pure shear) is read: name it Planar or Pure Shear, or give `kinds` planar"
+        raise InputError("a shear that is not named pure is taken for simple shear", file=file, remedy=remedy)
     if given is not None and named is not None and given != named:
         problem = f"{given}, but its columns {pair.length.name} and {pair.load.name} are of a test that is {named}"
         raise InputError(problem, file=file, key="kinds", remedy=f"give {named} for it, or other names to the columns")
