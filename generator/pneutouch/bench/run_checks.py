@@ -183,10 +183,10 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     # Where the travel itself is suspect, the ends are compared.
     reach = min(depth, expected.depth) if questions[0] is None else depth
     force, rise = expected.at(reach if questions[0] is None else expected.depth)
-    reads, rises = (float(np.interp(reach, curve.indentation, values)) for values in (curve.force, curve.rise))
+    pushes, rises = (float(np.interp(reach, curve.indentation, values)) for values in (curve.force, curve.rise))
     # Where force and pressure agree, the travel is greater than the dome's; a stiffness too low is asked about.
-    alike = rises / float(np.interp(reads, expected.force, expected.rise))
-    if force / _YIELDS < reads < force and 1 / _AGREES < alike < _AGREES:
+    alike = rises / float(np.interp(pushes, expected.force, expected.rise))
+    if force / _YIELDS < pushes < force and 1 / _AGREES < alike < _AGREES:
         return questions
     for key, values, target, unit, name in (
         ("force", curve.force, force, 1.0, "N"),

@@ -153,7 +153,8 @@ def measured_text(measured: "MeasuredCampaign", named: Callable[[str], str | Non
         )
     for figure in measured.injections:
         error = "" if figure.standard_error is None else f" ± {figure.standard_error:.2g}"
-        lines.append(f"\n{figure.sensor}: {figure.figure} {figure.value:.4g}{error} {figure.unit}")
+        predicted = "" if figure.predicted is None else f", predicted {figure.predicted:.4g}"
+        lines.append(f"\n{figure.sensor}: {figure.figure} {figure.value:.4g}{error} {figure.unit}{predicted}")
     told = [f"{run.file} as {run.kind}" for run in measured.runs if run.kind_by_record]
     if told:
         lines.append(f"\nkind of run, by the record: {listed(told, _NAMED)}")

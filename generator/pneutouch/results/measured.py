@@ -157,6 +157,8 @@ class InjectionFigure:
     """Standard error of the value."""
     unit: str
     """Unit of the value."""
+    predicted: float | None = None
+    """Predicted value, without an interval."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -269,3 +269,11 @@ def test_without_a_model_the_prediction_off_the_axis_is_the_harmonic_ones(offset
     rewritten(folder, lambda content: content.update(assignments=[f"contact.offset_mm={offset:g}"]))
     outcome = characterize(folder, library=library)
     assert given == [(offset, model)] and outcome.measured.model == model
+
+
+def test_the_volume_of_an_injection_stands_beside_the_one_that_a_dome_that_swells_shows(folder, library):
+    """As if rigid the dome has more than its dead volume and its cavity: what is measured of it, predicted alike."""
+    pushed = [row for row in run(folder, library).figures.injections if row.unit == "mL"]
+    assert pushed and all(row.predicted == pytest.approx(row.value, rel=0.05) for row in pushed)
+    cavity_mL = 2 / 3 * 3.1416 * 9.25**3 / 1000
+    assert all(row.predicted > 1.2 * cavity_mL for row in pushed)

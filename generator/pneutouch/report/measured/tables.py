@@ -226,7 +226,7 @@ def ageing_table(measured: CampaignReport) -> SheetTable:
 def lists(measured: CampaignReport) -> list[SheetBlock]:
     """Sections on leak and dead volume, failures, questions and warnings; those without entries are left out."""
     injections = [
-        [row.sensor, row.figure, number(row.value, 4), number(row.standard_error, 2), row.unit]
+        [row.sensor, row.figure, number(row.value, 4), number(row.predicted), number(row.standard_error, 2), row.unit]
         for row in measured.injections
     ]
     # The message begins with the file's path, which is printed next to it.
@@ -234,9 +234,9 @@ def lists(measured: CampaignReport) -> list[SheetBlock]:
     wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong, alike ones together."
     rigid = "A gas volume as if rigid counts the dome's swelling as gas; a calibration finds the dead volume alone."
     alike = ("Why", "Used", "Parts", "First in", "Seconds")
-    volumes = ("Sensor", "Figure", "Value", "Standard error", "Unit")
+    volumes = ("Sensor", "Figure", "Value", "Predicted", "Standard error", "Unit")
     return [
-        *_listed("Leak and dead volume", injections, volumes, (2, 3), Text(rigid, "muted")),
+        *_listed("Leak and dead volume", injections, volumes, (2, 3, 4), Text(rigid, "muted")),
         *_listed("Failures", failures, ("File", "Why it is not used")),
         *_listed("Questions", measured.questions, ("File or run", "Question"), (), Text(wrong, "muted")),
         *_listed("Warnings", _warnings(measured), alike, (2, 4), Text(doubtful, "muted")),

@@ -9,18 +9,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pneutouch.arrays import Array
 from pneutouch.bench.figures import summarize
 from pneutouch.bench.questions import outliers
 from pneutouch.bench.reading import dead_volume_of_cap
 from pneutouch.bench.record import MeasuredCurve, Trace
 from pneutouch.bench.run_checks import check_plausible
+from pneutouch.bench.simulate.curve import sensor_pressure
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import example_remedy
 from pneutouch.catalogue.listing import known_design
 from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
-from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.evaluate import Evaluation, sensor_of
 from pneutouch.formats import versioned
 from pneutouch.mechanics.models.choice import USUAL, usual_model
 from pneutouch.output.files import (
@@ -92,10 +94,11 @@ def _of(curve: MeasuredCurve) -> list[Any]:
     return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
 
 
-def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[InjectionFigure, ...]:
-    """Leak rates, and the gas volume of each injection as if the line were rigid.
-
-    An injection swells the dome, so that this volume is too large; a calibration takes the dome into account."""
+def injections(
+    loaded: CampaignData, scene: ResolvedDesign, answer_of: Mapping[tuple[str, float], StatePrediction]
+) -> tuple[InjectionFigure, ...]:
+    """Leak rates, and the gas volume of each injection as if the line were rigid, with the one that the predicted
+    dome, which swells, shows at the same pushes; a calibration takes the dome into account."""
     rows = [
         InjectionFigure(run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
@@ -103,8 +106,18 @@ def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[InjectionFi
     ambient_kPa = scene.design.pneumatics.ambient_pressure_kPa
     for run, volume, pressure in loaded.injections:
         total, name = dead_volume_of_cap(volume, pressure, ambient_kPa * KPA), f"gas volume as if rigid, {_when(run)}"
-        rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL"))
+        made = next((one.evaluation for (resin, _), one in answer_of.items() if resin == run.resin), None)
+        predicted = None if made is None else _as_if_rigid(made, volume)
+        rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL", predicted))
     return tuple(rows)
+
+
+def _as_if_rigid(made: Evaluation, volume: Array) -> float | None:
+    """Volume (mL) that the predicted sensor shows as if rigid; None if the pushes pass its limit point."""
+    gas = made.sensor.gas
+    pressure = sensor_pressure(volume, made.prediction.inflation, gas.dead_volume, gas.ambient_pressure)
+    total = dead_volume_of_cap(volume, pressure, gas.ambient_pressure).value / ML
+    return total if math.isfinite(total) else None
 
 
 def _when(run: CampaignRun) -> str:
@@ -201,7 +214,7 @@ def characterize(
         failures=(*loaded.failures, *failures),
         questions=(*questions, *unexpected(comparisons)),
         verdicts=() if request is None else verdicts(request, groups),
-        injections=injections(loaded, scene),
+        injections=injections(loaded, scene, answer_of),
         ageing=ageing(groups, library),
         model=model,
         input_hash=_hash(loaded, scene.design.model_dump(mode="json")),

@@ -159,7 +159,7 @@ def _figures(
 def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str], ...]:
     """Questions about groups whose figures lie outside the predicted interval: a file of the group, and possible
     reasons."""
-    questions = []
+    questions: list[tuple[str, str]] = []
     for comparison in comparisons:
         group, before = comparison.group, len(questions)
         for key, why in _EXPLAINED.items():
