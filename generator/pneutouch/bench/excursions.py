@@ -249,7 +249,7 @@ def _steps(place: Array, one: Excursion, noise: float) -> list[Excursion]:
     way = place[start : one.hold[0]]
     holds = [(first + start, last + start) for first, last in _stays(way, float(place[one.hold[0]]), noise)]
     # After slow steps a short stay at the deep end looks like a slow turn.
-    long = bool(holds) and one.hold[1] - one.hold[0] >= _AS_LONG * np.median(np.diff(holds))
+    long = bool(holds) and one.hold[1] - one.hold[0] >= _AS_LONG * float(np.median(np.diff(holds)))
     return [*(one._replace(hold=hold, held=True) for hold in holds), one._replace(held=one.held or long)]
 
 
