@@ -15,26 +15,10 @@ from pneutouch.spec.toml_text import value_text
 from pneutouch.tables.layout import TableFormat, TableLayout
 from pneutouch.tables.read import layout_of
 from pneutouch.tables.unit_words import BRACKETS, UNITS, unit_of
+from pneutouch.wording import data_of
 
-_WORDS = {
-    "time": "time t zeit temps tiempo tempo x_value elapsed seconds millis timestamp datetime",
-    "position": "position pos displacement disp extension travel stroke depth crosshead indentation deflection "
-    "deformation verformung weg z deplacement déplacement posizione",
-    "force": "force f load kraft charge effort fuerza forza",
-    "pressure": "pressure press p druck pression presión presion pressione",
-    "volume": "volume vol v volumen",
-}
-"""Words for the channels in English, German, French, Spanish and Italian."""
-
-_ENDINGS = {"kraft": "force", "weg": "position", "zeit": "time", "druck": "pressure"}
-"""Last parts of German compounds, such as Standardkraft."""
-
-_OTHER_QUANTITIES = (
-    "rate speed velocity geschwindigkeit setpoint sp sollwert target command demand limit "
-    "absolute abs ambient atmospheric barometric baro stress spannung modulus cycle cycles"
-)
-"""Words in a header that exclude its column, whatever its unit: no measured force or gauge pressure."""
-
+_DATA = data_of(__file__)
+_WORDS, _ENDINGS, _OTHER_QUANTITIES = _DATA["words"], _DATA["endings"], _DATA["other_quantities"]["words"]
 _SPLIT = re.compile(r"[^\W_]+")
 _LONGEST = 200
 """Greatest length of a header in which a unit without brackets is looked for."""

@@ -23,34 +23,16 @@ from pneutouch.printability.rulebook import check_mould, mould_subject
 from pneutouch.printability.rules.feature_sizes import ALIKE, CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
+from pneutouch.wording import data_of
 
-_HINTS = {
-    "membrane": {
-        "walls": "raise membrane.wall_thickness_mm",
-        "envelope": "take a smaller membrane.inner_radius_mm or another print.profile",
-        "resins": "take another membrane.material or print.profile",
-    },
-    "connector": {
-        "holes": "drill it after printing",
-        "channels": "drill it through after printing",
-        "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
-        "resins": "take another connector.material or print.connector_profile",
-    },
-}
+_HINTS: dict[str, dict[str, str]] = data_of(__file__)
 """Remedies in the design by body and rule; a ring and a plug take those of the connector."""
-
-_RING_HINTS = {
-    **_HINTS["connector"],
-    "walls": "raise cast_ring.width_mm or cast_ring.thickness_mm, or lower cast_ring.hole_count",
-    "holes": "drill them after printing, or raise cast_ring.hole_diameter_mm",
-}
-"""Remedies in the design by rule for the ring that a flange is cast around."""
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:
     """The bodies of a sensor as they stand in their machines, and the faces that membrane, connector and ring share."""
     scene, layout = assembly.scene, assembly.layout
-    hints = _HINTS if layout.ring is None else {**_HINTS, RING: _RING_HINTS}
+    hints = {**_HINTS, RING: {**_HINTS["connector"], **_HINTS["ring"]}}
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         printer, mode = assembly.machine(body.name)

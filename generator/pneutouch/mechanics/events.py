@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.wording import data_of
+
 #: Ratio of the stretch across a neo-Hookean surface to the least stretch along it at which the surface creases: 2.4, or
 #: strain 0.35 in plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here). The
 #: smooth solution continues beyond it, but is unsafe.
@@ -25,21 +27,7 @@ BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
 
 PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
 
-DETAIL = {
-    "gauge_range": "the pressure sensor's range ends",
-    "break": "the material's break strain is reached",
-    "crease": "a face of the wall is compressed enough to crease",
-    "separation": "the wall leaves the plate inside the contact",
-    PLATE_RIM: "the contact reaches the plate's rim",
-    OBJECT_EDGE: "the contact reaches the object's edge, or a flank of 60 degrees",
-    "floor": "the inner wall reaches the base plane",
-    "overhang": "the wall hangs below its base plane, where it has no support",
-    "base": "the outer wall lies down on the base next to its clamp",
-    "sway": "the dome is no longer stable on its axis and sways sideways where the contact slips; figures beyond are "
-    "of the axisymmetric path",
-    "lobes": "the dome is no longer stable as a body of revolution and takes {waves} lobes around the axis; figures "
-    "beyond are of the axisymmetric path",
-}
+DETAIL: dict[str, str] = data_of(__file__)
 
 OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the contact"}
 """Texts of the events for an object other than a plate."""

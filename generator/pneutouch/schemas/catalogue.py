@@ -23,6 +23,7 @@ from pneutouch.schemas.pieces import (
     record,
 )
 from pneutouch.spec.tray import MAX_VALUES
+from pneutouch.wording import data_of
 
 _SCALAR = {"type": ["number", "string", "boolean"]}
 _VALUE = any_of(_SCALAR, items({"anyOf": [_SCALAR, {"type": "array"}]}))
@@ -70,23 +71,7 @@ def sweep_schema() -> Schema:
     return record("Designs that differ in some fields.", keys, optional=[key for key in keys if key != "design"])
 
 
-_MODELS = {
-    "design": ("design.DesignFile", "A design", "`designs/`"),
-    "target": ("target.Target", "A target", "given to `select`"),
-    "tray": ("tray.Tray", "A tray", "given to `tray`"),
-    "tasks": ("tasks.TaskFile", "Tasks of a sensor", "given to `pneutouch predict --tasks`"),
-    "campaign": ("campaign.Campaign", "A measurement campaign", "given to `characterize` and `calibrate`"),
-    "calibration": ("calibration.SensorCalibration", "A calibration of one sensor", "`calibrations/`"),
-    "coupons": ("coupon.CouponResults", "What was measured on coupons", "given to `pneutouch coupons --results`"),
-    "material": ("material.Material", "A cured material", "`printprofiles/materials/`"),
-    "mixing": ("grade.MixingCurve", "A mixing curve of two resins", "`printprofiles/mixing/`"),
-    "printer": ("printer.Printer", "A printer", "`printprofiles/`"),
-    "gauge": ("gauge.Gauge", "A pressure gauge", "`printprofiles/gauges/`"),
-    "tube": ("part.Tube", "A tube", "`parts/tubes/`"),
-    "port": ("part.Port", "A pneumatic port", "`parts/ports/`"),
-    "seat": ("part.AnySeat", "A seat of the membrane", "`parts/seats/`"),
-    "mount": ("part.AnyMount", "A mounting pattern", "`parts/mounts/`"),
-}
+_MODELS: dict[str, list[str]] = data_of(__file__)["models"]
 """Model in `spec`, title and place of every file with a single model, by the name of its schema."""
 
 

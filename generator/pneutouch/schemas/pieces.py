@@ -12,29 +12,11 @@ from typing import Any, Literal, NamedTuple
 from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
+from pneutouch.wording import data_of
+
 Schema = dict[str, Any]
 
-_UNITS = {
-    "kPa_kPa_per_N": "kPa/N",
-    "kPa_per_N": "kPa/N",
-    "N_per_mm": "N/mm",
-    "N_per_K": "N/K",
-    "kPa_per_K": "kPa/K",
-    "percent_per_decade": "%/decade",
-    "mm_per_s": "mm/s",
-    "mm3_per_s": "mm³/s",
-    "g_per_cm3": "g/cm³",
-    "N_mm": "N mm",
-    "Pa_s": "Pa s",
-    "percent": "%",
-    "mm2": "mm²",
-    "mm3": "mm³",
-    "um": "µm",
-    "deg": "°",
-    "days": "d",
-    "C": "°C",
-    **{unit: unit for unit in ["kPa", "MPa", "Hz", "mL", "mm", "ms", "min", "N", "K", "V", "g", "h", "s"]},
-}
+_UNITS = data_of(__file__)["units"]
 _SUFFIX = re.compile(rf"_({'|'.join(_UNITS)})(?:_\d+)?$")
 
 

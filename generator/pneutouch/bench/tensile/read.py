@@ -17,31 +17,16 @@ from pneutouch.tables.layout import TableLayout
 from pneutouch.tables.read import layout_of, whole
 from pneutouch.tables.text import head_lines
 from pneutouch.tables.unit_words import BRACKETS, UNITS, unit_of
+from pneutouch.wording import data_of
 
-_WORDS = {
-    "stress": ("stress", "spannung", "contrainte"),
-    "strain": ("strain", "dehnung", "elongation", "allongement"),
-    "stretch": ("stretch", "lambda", "streckung"),
-    "force": ("force", "load", "kraft"),
-    "pressure": ("pressure", "druck", "pression"),
-    "radius": ("radius", "rayon"),
-    "height": ("height", "höhe", "hauteur"),
-    "travel": ("extension", "displacement", "travel", "compression", "indentation", "position", "crosshead", "weg"),
-}
-"""Words in a header that show the kind of its column."""
-
-_TRUE = ("true", "log", "logarithmic", "hencky", "cauchy")
-_NOMINAL = ("engineering", "nominal", "eng", "eng.", "technical")
+_DATA = data_of(__file__)
+_WORDS, _KINDS = _DATA["words"], _DATA["kinds"]
+_TRUE, _NOMINAL, _PERCENT, _PLAIN = (_DATA["others"][key] for key in ("true", "nominal", "percent", "plain"))
 _STRESS_WORDS = {"n/mm2": 1.0, "n/mm²": 1.0, "n/mm^2": 1.0}
-_PERCENT = ("%", "percent", "per cent", "pct")
-_PLAIN = ("", "-", "mm/mm", "m/m", "1", "mm mm-1")
 
 _STRETCHES = ("stretch", "strain")
 _PAIRS = ((_STRETCHES, "stress"), (_STRETCHES, "force"), (("travel",), "force"), (_STRETCHES, "pressure"))
 """Kinds of length column, and the kind of load column that each needs, the best pair first."""
-
-_KINDS = {"biaxial": "equibiaxial", "equibiaxial": "equibiaxial", "planar": "planar", "pure": "planar"}
-"""Kind of test by a word in the name of a column. Pure shear is planar tension, simple shear is neither."""
 
 NAMES = "Engineering Strain, Engineering Stress (MPa)"
 """Column names that are understood, for messages."""
