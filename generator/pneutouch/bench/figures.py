@@ -15,6 +15,7 @@ from pneutouch.mechanics.response import Figures, Of, figures
 from pneutouch.mechanics.viscous.runs import hysteresis
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
+from pneutouch.wording import data_of
 
 Pooled = Literal["mean", "within", "between"]
 
@@ -35,34 +36,7 @@ class FigureDefinition:
     reading: float = 0.0
 
 
-_WIDTH_READING, _AREA_READING = 0.03, 0.04
-"""Relative biases of a loop's width and area, found in simulated loops of known sensors with 0.2 to 0.4 % of
-hysteresis, recorded at 2 kHz (docs/background/coverage.json: ``off`` of the loop's figures)."""
-
-FIGURES = (
-    FigureDefinition(SENSITIVITY_KEY, "Sensitivity, line with intercept", "kPa/N", digits=4),
-    FigureDefinition("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
-    FigureDefinition("r_squared", "R²", "", digits=5),
-    FigureDefinition("nonlinearity_percent", "Nonlinearity", "% of full scale"),
-    FigureDefinition("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", SENSITIVITY_KEY),
-    FigureDefinition("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", SENSITIVITY_KEY),
-    FigureDefinition(STIFFNESS_KEY, "Mean stiffness", "N/mm"),
-    FigureDefinition("force_range_N", "Force at the greatest depth", "N"),
-    FigureDefinition("saturation_force_N", "Saturation force", "N"),
-    FigureDefinition("sensing_range_N", "Sensing range", "N"),
-    FigureDefinition(
-        "hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale", reading=_WIDTH_READING
-    ),
-    FigureDefinition("hysteresis_area_percent", "Hysteresis, area of the loop", "% of loading", reading=_AREA_READING),
-    FigureDefinition("relaxation_force_percent", "Relaxation of the force", "%"),
-    FigureDefinition("relaxation_force_percent_per_decade", "Relaxation of the force", "% a decade"),
-    FigureDefinition("relaxation_pressure_percent", "Relaxation of the pressure rise", "%"),
-    FigureDefinition("relaxation_pressure_percent_per_decade", "Relaxation of the pressure rise", "% a decade"),
-    FigureDefinition("drift_pressure_kPa_per_min", "Drift of the pressure without contact", "kPa/min"),
-    FigureDefinition("noise_force_N", "Noise of a force sample", "N rms"),
-    FigureDefinition("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
-    FigureDefinition("resolution_N", "Resolution of the force read from the pressure", "N"),
-)
+FIGURES = tuple(FigureDefinition(key, **one) for key, one in data_of(__file__).items())
 """Figures in the order of every table. Definitions with formula and source: docs/howto/measuring.md."""
 
 BY_KEY = {figure.key: figure for figure in FIGURES}

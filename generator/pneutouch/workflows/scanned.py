@@ -20,21 +20,11 @@ from pneutouch.texture.signal import Signal, decimated
 from pneutouch.texture.sliding import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
 from pneutouch.units import KPA
-from pneutouch.wording import rounded
+from pneutouch.wording import data_of, rounded
 from pneutouch.workflows.scan import AnalysedSignal, ScanRun
 from pneutouch.workflows.specimen import inputs as specimen_inputs
 
-ASSUMPTIONS = (
-    "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",
-    "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no "
-    "relief",
-    "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch "
-    "and up to 4.4 times at "
-    "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/background/texture.md)",
-    f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the "
-    "paper states none",
-    "air at constant temperature (Boyle) with the design's dead volume",
-)
+ASSUMPTIONS = tuple(text.format(noise=NOISE / KPA, step=STEP / KPA) for text in data_of(__file__)["assumptions"])
 
 _DIGITS = 7
 

@@ -10,6 +10,7 @@ from typing import Any
 from pneutouch.export import templates
 from pneutouch.export.reader.reading import NOISES, QUIET, Status
 from pneutouch.spec.gauge import Gauge
+from pneutouch.wording import data_of
 
 _BUS = "ABP2"
 """Order codes that begin so have the protocol of the sketch: command AA 00 00, 5 ms, seven bytes with pressure
@@ -53,18 +54,7 @@ SCHEMA = HERE / "reader.schema.json"
 MOST_TABLES = 8192
 """Greatest size of the tables of a header, bytes."""
 
-WORDS = {
-    Status.OK: "force and uncertainty hold",
-    Status.ABOVE_RATING: "they hold, but the driving pressure is above the rated pressure",
-    Status.NOT_TARED: "tare the reader first",
-    Status.NOT_A_NUMBER: "an input is not a finite number, or nothing was read for the tare",
-    Status.GAUGE_SATURATED: "the pressure is at the end of the gauge's range or beyond",
-    Status.CONDITIONS: "temperature or ambient pressure is outside the box",
-    Status.DRIVING_PRESSURE: "the driving pressure is outside the box",
-    Status.BELOW_ZERO: "the pressure is below that without contact: leak or cooling; tare again",
-    Status.BEYOND_RANGE: "the force is beyond the box",
-    Status.UNSTEADY_TARE: "the readings of the tare scatter: something moves; tare again",
-}
+WORDS: dict[str, str] = data_of(__file__)
 """Meaning of each status."""
 
 _PARTS = ("format", "grid", "gas", "box", "rating", "gauge", "zero", "conditions")
@@ -160,7 +150,7 @@ def _header(record: Mapping[str, Any]) -> dict[str, Any]:
         "half": _half(columns - 1),
         "gas_half": _half(len(gas) - 1),
         "bytes": table_bytes(record),
-        "statuses": [{"name": one.name, "value": int(one), "words": WORDS[one]} for one in Status],
+        "statuses": [{"name": one.name, "value": int(one), "words": WORDS[one.name]} for one in Status],
     }
 
 

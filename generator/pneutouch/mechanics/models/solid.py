@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
-from pneutouch.mechanics.events import LOBES, SWAY, Event, SolidEvent, range_end
+from pneutouch.mechanics.events import Event, SolidEvent, range_end
 from pneutouch.mechanics.models.accuracy import (
     BODY,
     LIMIT_DISCRETISATION,
@@ -45,6 +45,7 @@ from pneutouch.mechanics.solid.object_contact import Indenter
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
+from pneutouch.wording import data_of
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.object_contact import PressedFace
@@ -130,23 +131,7 @@ _DRAWN = 3.0
 _PAST_LIMIT = 1.6
 """Multiple of the limit point's volume to which inflation continues: enough to show the falling branch."""
 
-KINDS = {
-    "unstable": ("loss of stability", True),
-    "snap": ("inward buckling", True),
-    "clamp_fold": ("fold at the clamp", True),
-    "lost": ("no equilibrium found", True),
-    "floor": ("apex at the base plane", True),
-    "separation": ("contact separates at the centre", True),
-    "break": ("break strain", True),
-    "gauge_range": ("gauge range", True),
-    "plate_rim": ("plate edge", True),
-    "object_edge": ("object edge", True),
-    "crease": ("creasing", False),
-    "overhang": ("wall below the base plane", False),
-    "base": ("wall on its base", False),
-    "sway": (SWAY, False),
-    "lobes": (LOBES, False),
-}
+KINDS: dict[str, tuple[str, bool]] = {kind: (name, ends) for kind, (name, ends) in data_of(__file__).items()}
 """Reported name of each kind of the solver's events, and True if no figure may be fitted beyond it."""
 
 

@@ -231,15 +231,13 @@ def lists(measured: CampaignReport) -> list[SheetBlock]:
     ]
     # The message begins with the file's path, which is printed next to it.
     failures = [[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures]
-    wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong, alike ones together."
-    rigid = "A gas volume as if rigid counts the dome's swelling as gas; a calibration finds the dead volume alone."
-    alike = ("Why", "Used", "Parts", "First in", "Seconds")
-    volumes = ("Sensor", "Figure", "Value", "Predicted", "Standard error", "Unit")
+    words = _WORDS["lists"]
+    wrong, doubtful, rigid = (Text(words[key], "muted") for key in ("wrong", "doubtful", "rigid"))
     return [
-        *_listed("Leak and dead volume", injections, volumes, (2, 3, 4), Text(rigid, "muted")),
+        *_listed("Leak and dead volume", injections, words["volumes"], (2, 3, 4), rigid),
         *_listed("Failures", failures, ("File", "Why it is not used")),
-        *_listed("Questions", measured.questions, ("File or run", "Question"), (), Text(wrong, "muted")),
-        *_listed("Warnings", _warnings(measured), alike, (2, 4), Text(doubtful, "muted")),
+        *_listed("Questions", measured.questions, ("File or run", "Question"), (), wrong),
+        *_listed("Warnings", _warnings(measured), words["alike"], (2, 4), doubtful),
     ]
 
 
