@@ -164,6 +164,6 @@ VERDICTS = (
 )
 INJECTIONS = (
     InjectionFigure("TangoPlus-1", "leak", 0.0213, 0.0031, "kPa/min"),
-    InjectionFigure("TangoPlus-1", "dead volume", 0.512, 0.012, "mL"),
+    InjectionFigure("TangoPlus-1", "dead volume", 0.512, 0.012, "mL", 0.48),
     InjectionFigure("TangoPlus-2", "cavity volume", 1.31, None, "mL"),
 )

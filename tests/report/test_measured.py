@@ -129,7 +129,9 @@ def test_failures_questions_doubts_and_leaks_are_listed(sheet):
     warnings = table_under(sheet, "Warnings").rows
     assert [row[0] for row in warnings] == [f"doubt number {k} in a row" for k in range(MOST)]
     assert sum(int(row[2]) for row in warnings) == MOST
-    assert ["TangoPlus-1", "leak", "0.02130", "0.0031", "kPa/min"] in table_under(sheet, "Leak and dead volume").rows
+    leaks = table_under(sheet, "Leak and dead volume").rows
+    assert ["TangoPlus-1", "leak", "0.02130", "–", "0.0031", "kPa/min"] in leaks
+    assert ["TangoPlus-1", "dead volume", "0.5120", "0.480", "0.012", "mL"] in leaks
     (box,) = found(sheet.blocks, FramedBlocks)
     left = (MOST + 7 + 1) // 2
     assert f"{left} doubtful" in box.blocks[-1].text and f"{MOST + 7 - left} noted" in box.blocks[-1].text

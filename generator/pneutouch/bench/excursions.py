@@ -43,8 +43,9 @@ distance: about 1 for a stay, 2 for a sine, 4 for a turn at constant speed."""
 _LINGERS = 4.0
 """Least ratio of the time at a stay on the way in to the time at the other places of the way: our choice."""
 
-_AS_LONG = 0.7
-"""Least time at the deep end, as a share of those at the stays before it, that makes it one too: our choice."""
+_AS_LONG, _INSIDE = 0.7, 0.1
+"""Least time at the deep end, as a share of those at the stays before it, that makes it one too, and share of the way
+in from which on these count, as a sine begins slowly: our choice."""
 
 _SCATTERED = 1.5
 """Greatest ratio of blocks from a stay's first to its last to blocks at its depth; above it the plate came twice."""
@@ -188,10 +189,12 @@ def rough_lag(blocks: Blocks, key: str) -> float:
     if min(np.ptp(place), np.ptp(values)) <= 0 or place[-1] > 0.5 * (place.min() + place.max()):
         return 0.0
     lags = np.linspace(-_LATEST, _LATEST, 81)
-    alike = np.array([np.corrcoef(np.interp(time + lag, time, values), place)[0, 1] for lag in lags])
+    moved = np.array([np.interp(time + lag, time, values) for lag in (*lags, 0.0)])
+    moved, place = moved - moved.mean(axis=1, keepdims=True), place - place.mean()
+    *alike, now = moved @ place / np.maximum(np.linalg.norm(moved, axis=1) * np.linalg.norm(place), 1e-300)
     # Of cycles the nearest.
-    best = int(np.argmax(alike - _ALIKE * np.abs(lags)))
-    return float(lags[best]) if alike[best] > _ALIKE + abs(np.corrcoef(values, place)[0, 1]) else 0.0
+    best = int(np.argmax(np.array(alike) - _ALIKE * np.abs(lags)))
+    return float(lags[best]) if alike[best] > _ALIKE + abs(now) else 0.0
 
 
 def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
@@ -249,7 +252,9 @@ def _steps(place: Array, one: Excursion, noise: float) -> list[Excursion]:
     way = place[start : one.hold[0]]
     holds = [(first + start, last + start) for first, last in _stays(way, float(place[one.hold[0]]), noise)]
     # After slow steps a short stay at the deep end looks like a slow turn.
-    long = bool(holds) and one.hold[1] - one.hold[0] >= _AS_LONG * float(np.median(np.diff(holds)))
+    low, top = place[start], place[one.hold[0]]
+    inside = [last - first for first, last in holds if place[first] > low + _INSIDE * (top - low)]
+    long = bool(inside) and one.hold[1] - one.hold[0] >= _AS_LONG * float(np.median(inside))
     return [*(one._replace(hold=hold, held=True) for hold in holds), one._replace(held=one.held or long)]
 
 

@@ -138,7 +138,9 @@ def _of_one(
         warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
     if math.isnan(indent.release) and not goes_on(indentations, number - 1):
         lasting = f"indentation {number}: no release: the force does not go back"
-        warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True))
+        back = blocks.position[indentations.parts[number - 1].out - 1] < indent.onset
+        kind: SuspectKind = "asked" if back and blocks.position is not blocks.force else "other"
+        warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True, kind))
     return warnings
 
 

@@ -16,7 +16,19 @@ from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.characterize.load import load_curves
 from tests.bench.reads import read as plates
 from tests.bench.reads import refuse
-from tests.bench.recordings import CLEAR, DEEP, READ, ZERO, Recording, by_hand, depths, plain, presses, true_figures
+from tests.bench.recordings import (
+    CLEAR,
+    DEEP,
+    READ,
+    ZERO,
+    Recording,
+    by_hand,
+    depths,
+    plain,
+    presses,
+    true_figures,
+    without,
+)
 
 VARIANTS = {
     "footer",
@@ -175,6 +187,27 @@ def test_a_force_whose_fit_knows_no_first_contact_has_no_interval(tmp_path):
 @pytest.mark.parametrize("name", ["stairs without return", "stairs with return"])
 def test_a_leak_that_spoils_the_sensitivity_is_a_question(name, drift, tmp_path):
     assert asked(read(tmp_path, replace(READ[name], drift=drift)), "without contact")
+
+
+def cycles(seconds):
+    """Legs of three cycles of a sine."""
+    travel = CLEAR + (DEEP - CLEAR) * (1 - np.cos(2 * np.pi * np.linspace(0.0, 3.0, 181))) / 2
+    return [(seconds / 60, float(place)) for place in travel[1:]]
+
+
+def test_a_force_that_does_not_come_back_is_a_question(tmp_path):
+    def jumped(samples):
+        samples[2, samples.shape[1] * 4 // 9 :] += 2.0
+        return samples
+
+    assert asked(read(tmp_path, Recording(cycles(5.0), spoil=jumped)), "no release")
+
+
+def test_a_gap_at_a_turn_of_a_sine_leaves_that_cycle_out(tmp_path):
+    """The slow begin of the way in is no stay, after which the deep end would be one."""
+    cut = Recording(cycles(10.0), spoil=without((6184, 7684)))
+    for key, value in true_figures(depths(25)).items():
+        assert figures(read(tmp_path, cut))[key].value == pytest.approx(value, rel=0.02), key
 
 
 @pytest.mark.parametrize("seconds", [0.8, 1.5, 4.0])

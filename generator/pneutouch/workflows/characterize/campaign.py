@@ -107,17 +107,17 @@ def injections(
     for run, volume, pressure in loaded.injections:
         total, name = dead_volume_of_cap(volume, pressure, ambient_kPa * KPA), f"gas volume as if rigid, {_when(run)}"
         made = next((one.evaluation for (resin, _), one in answer_of.items() if resin == run.resin), None)
-        predicted = None if made is None else _as_if_rigid(made, volume)
-        rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL", predicted))
+        shown = math.nan if made is None else _as_if_rigid(made, volume)
+        predicted_mL = shown / ML if math.isfinite(shown) else None
+        rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL", predicted_mL))
     return tuple(rows)
 
 
-def _as_if_rigid(made: Evaluation, volume: Array) -> float | None:
-    """Volume (mL) that the predicted sensor shows as if rigid; None if the pushes pass its limit point."""
+def _as_if_rigid(made: Evaluation, volume: Array) -> float:
+    """Volume that the predicted sensor shows as if rigid, mm3; NaN if the pushes pass its limit point."""
     gas = made.sensor.gas
     pressure = sensor_pressure(volume, made.prediction.inflation, gas.dead_volume, gas.ambient_pressure)
-    total = dead_volume_of_cap(volume, pressure, gas.ambient_pressure).value / ML
-    return total if math.isfinite(total) else None
+    return dead_volume_of_cap(volume, pressure, gas.ambient_pressure).value
 
 
 def _when(run: CampaignRun) -> str:
