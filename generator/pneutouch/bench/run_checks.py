@@ -47,7 +47,7 @@ compared; relative distances from the prediction below which it is met and above
 _LOST = 10.0
 """Multiple of its noise below which a force may be lost in it: our choice."""
 
-_YIELDS, _AGREES = 5.0, 1.2
+_YIELDS, _AGREES = 8.0, 1.2
 """Greatest ratio of predicted to measured force that a rig that yields explains, and of the rise at that force to the
 prediction's, or its inverse: our choice, less than a wrong unit of the force makes of it."""
 

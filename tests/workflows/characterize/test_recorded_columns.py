@@ -76,7 +76,7 @@ def test_milliseconds_under_a_heading_of_seconds_are_asked_about_with_the_unit(n
 
 
 @pytest.mark.parametrize("name", ["triangular", "steps"])
-@pytest.mark.parametrize("compliance", [0.02, 0.05, 0.2])
+@pytest.mark.parametrize("compliance", [0.02, 0.05, 0.2, 0.4])
 def test_a_rig_that_yields_is_asked_about_and_gives_the_truth_where_that_is_stated(name, compliance, tmp_path):
     """The travel holds that of the stage under the force; the sensitivity does not show it."""
     yields = replace(READ[name], spoil=lambda s: s + np.array([[0], [compliance], [0], [0]]) * s[2])
