@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pneutouch.cli.terminal import table_text
-from pneutouch.mechanics.events import LOBES, SWAY
+from pneutouch.mechanics.events import WARNED
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.wording import SIMULATED, counted, held_by, tenths_below
 
@@ -61,7 +61,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         "",
         *_as_drawn(prediction),
         *(_filled(prediction.filled) if prediction.filled else ()),
-        *_off_axis(prediction.states),
+        *_warned(prediction),
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
         *([] if error.model_choice is None else [f"model {prediction.model}: {error.model_choice}"]),
@@ -183,14 +183,14 @@ def _range_end(state: StateRecord) -> str:
     return f"{ends[0] if ends else 'depth'}, {state.range_end_mm:.2f} mm"
 
 
-def _off_axis(states: Sequence[StateRecord]) -> list[str]:
-    """Events in which the axisymmetric path is unstable, one line each."""
+def _warned(prediction: PredictionRecord) -> list[str]:
+    """Events to warn of, one line each."""
     return [
-        f"warning: {event.kind} at {event.indentation_mm:.2f} mm and {state.driving_pressure_kPa:g} kPa: "
+        f"warning: {event.kind} at {event.indentation_mm:.2f} mm and {state.driving_pressure_kPa:.4g} kPa: "
         f"{event.message}"
-        for state in states
+        for state in (*prediction.states, *prediction.filled)
         for event in state.events
-        if event.kind in (SWAY, LOBES)
+        if event.kind in WARNED
     ]
 
 

@@ -68,7 +68,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         record,
         states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
         contact=contact_document(evaluation.scene).get("contact"),
-        rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
+        rating=rating_record(evaluation.rating, [s.driving_pressure for s in evaluation.prediction.all_states]),
         dead_volume_note=assembly.dead_volume_note or None,
         dead_volume_as_drawn_mL=drawn_mL,
         as_drawn=() if evaluation.as_drawn is None else by_model(evaluation.as_drawn).states,

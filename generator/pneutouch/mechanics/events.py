@@ -75,8 +75,9 @@ def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
     return float(a.x + span * share[int(np.argmax(curve >= level))])
 
 
-SWAY, LOBES = "sway", "lobes"
-"""Kinds after which the path holds only as a body of revolution: the dome leaves its axis, or its round form."""
+SWAY, LOBES, NO_LINE = "sway", "lobes", "no line"
+WARNED = (SWAY, LOBES, NO_LINE)
+"""Kinds to warn of: the dome leaves its axis, or its round form; no line fits the range, so that it has no figures."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,8 +86,8 @@ def predict(
         limits=result.limits,
         dead_volume=dead,
         inflation=result.inflation,
-        states=tuple(state.corrected(correction) for state in result.states),
-        filled=tuple(state.corrected(correction) for state in filled or ()),
+        states=tuple(state.corrected(correction).judged() for state in result.states),
+        filled=tuple(state.corrected(correction).judged() for state in filled or ()),
         assumptions=(*chosen.assumptions(sensor), held, contact_words(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
     )
 

@@ -11,8 +11,8 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.events import LOBES, SWAY, Event
-from pneutouch.mechanics.response import Figures
+from pneutouch.mechanics.events import NO_LINE, WARNED, Event
+from pneutouch.mechanics.response import STRAIGHT, Figures
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.spec.material import MixByCurve
@@ -140,10 +140,20 @@ class SensorState:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
 
     @property
-    def off_axis(self) -> tuple[Event, ...]:
-        """Events in which the axisymmetric path loses its stability; states beyond them are still computed on that
-        path."""
-        return tuple(event for event in self.events if event.kind in (SWAY, LOBES))
+    def warned(self) -> tuple[Event, ...]:
+        """Events to warn of, see `WARNED`."""
+        return tuple(event for event in self.events if event.kind in WARNED)
+
+    def judged(self) -> SensorState:
+        """The state, without figures and with an event that gives the reason if its curve falls or is no line."""
+        f = self.figures
+        if f is None or (f.sensitivity > 0.0 and f.r_squared >= STRAIGHT):
+            return self
+        why = "the pressure does not rise with the force"
+        if f.sensitivity > 0.0:
+            why = f"a straight line explains {f.r_squared:.0%} of the pressure's changes"
+        event = Event(NO_LINE, self.range_end, False, f"{why}, so no sensitivity, stiffness or force range is given")
+        return replace(self, figures=None, events=(*self.events, event))
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
         """The state with force and rise times the correction's factors; events and range end are unchanged."""
@@ -200,6 +210,11 @@ class SensorPrediction:
     states: tuple[SensorState, ...]
     assumptions: tuple[str, ...]
     filled: tuple[SensorState, ...] = ()
+
+    @property
+    def all_states(self) -> tuple[SensorState, ...]:
+        """The states at driving pressures, then those given by their filling."""
+        return *self.states, *self.filled
 
     def __repr__(self) -> str:
         return f"SensorPrediction({self.design!r}, model {self.model}, {len(self.states)} states)"

@@ -80,8 +80,8 @@ class Rating:
         """Text for a driving pressure (MPa) above the rated pressure: the limit or rating that it exceeds."""
         if self.severity(pressure) == "error":
             least = self.nominal
-            return f"{pressure / KPA:g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
-        return f"{pressure / KPA:g} kPa is above the rated pressure of {self.pressure_kPa:.1f} kPa"
+            return f"{pressure / KPA:.5g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
+        return f"{pressure / KPA:.5g} kPa is above the rated pressure of {self.pressure_kPa:.1f} kPa"
 
     @property
     def basis(self) -> str:

@@ -16,6 +16,8 @@ SHALLOW = (1.0, 3.0)
 """Depths, mm, of the tangent stiffnesses: the paper's stiffness is dF/d(delta) at a depth, its Figure 5(a)."""
 _RESOLVED = 8
 """Least number of points of a curve whose slope is read: within 4 % of a fine mesh's with 8, within 3 % with 14."""
+STRAIGHT = 0.9
+"""Least r_squared of a predicted curve whose slope is given as sensitivity."""
 _SATURATED = 0.5
 """Share of the fitted slope below which the local slope counts as saturation."""
 

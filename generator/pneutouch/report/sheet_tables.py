@@ -42,6 +42,11 @@ def _is_above(sheet: SheetData, state: SensorState) -> bool:
     return sheet.rating.severity(state.driving_pressure) is not None
 
 
+def _star(sheet: SheetData, state: SensorState) -> str:
+    """Mark of a pressure above the rated one."""
+    return " *" if _is_above(sheet, state) else ""
+
+
 def _drawn(sheet: SheetData, k: int, figure: Callable[[SensorState], str]) -> str:
     """A figure of state ``k`` with the gas as drawn, after that of a dead volume of zero; empty without one."""
     if sheet.as_drawn is None:
@@ -55,7 +60,7 @@ def quiet_events(sheet: SheetData) -> list[str]:
     seen: dict[tuple[str, str], list[str]] = {}
     for state in sheet.prediction.states:
         for event in state.events:
-            if not event.ends_range and event not in state.off_axis and event.indentation <= state.range_end:
+            if not event.ends_range and event not in state.warned and event.indentation <= state.range_end:
                 force = float(np.interp(event.indentation, state.indentation, state.force))
                 place = f"{event.indentation:.2f} mm and {force:.1f} N at {state.driving_pressure / KPA:g} kPa"
                 seen.setdefault((event.kind, event.message), []).append(place)
@@ -64,12 +69,13 @@ def quiet_events(sheet: SheetData) -> list[str]:
 
 def warnings(sheet: SheetData) -> list[str]:
     """Sentences on driving pressures above the rating, and on depths at which the pressed dome leaves its axis."""
-    judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
+    states = sheet.prediction.all_states
+    judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
-    left = [(state.driving_pressure / KPA, event) for state in sheet.prediction.states for event in state.off_axis]
+    left = [(state.driving_pressure / KPA, event) for state in states for event in state.warned]
     if any(not _is_above(sheet, state) for state in sheet.prediction.states):
         above = [f"{text[:-1]}; its figures stand in the annex alone, marked *." for text in above]
-    return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:g} kPa: {e.message}." for p, e in left]
+    return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:.4g} kPa: {e.message}." for p, e in left]
 
 
 def _condition(sheet: SheetData, k: int, key: str = SENSITIVITY_KEY) -> str:
@@ -97,7 +103,7 @@ def filled(sheet: SheetData) -> list[SheetBlock]:
     rows = [
         [
             f"{state.held.injected / ML:.3g}",
-            f"{state.driving_pressure / KPA:.2f}",
+            f"{state.driving_pressure / KPA:.2f}{_star(sheet, state)}",
             f"{state.apex_outer:.2f}",
             held_by(*state.held[1:]),
             *(cell(state) for cell in (_sensitivity, _stiffness, _range, _ends)),
@@ -175,7 +181,7 @@ def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
     line = (DASH, DASH) if f is None else (f"{f.r_squared:.4f}", f"{100 * f.nonlinearity:.1f}")
     heights = f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}"
     beside = width, _published(sheet, pressure_kPa)
-    driving = f"{pressure_kPa:g}{' *' * _is_above(sheet, s)}"
+    driving = f"{pressure_kPa:g}{_star(sheet, s)}"
     shallow = [DASH if np.isnan(k) else f"{k:.2f}" for k in (() if f is None else (f.stiffness_1mm, f.stiffness_3mm))]
     stiffness = "; ".join([_stiffness(s), *([", ".join(shallow)] if shallow else [])])
     return [driving, *heights, _sensitivity(s), *beside, *line, stiffness, _range(s), _ends(s)]

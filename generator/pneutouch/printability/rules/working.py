@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.events import NO_LINE
 from pneutouch.parts.glue import GLUES, glues_for
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding
@@ -114,7 +115,26 @@ _SOURCES = {
 def check_driving(view: PrintView) -> list[Finding]:
     """Findings on a highest driving pressure above the rated pressure or the nominal limit, and on presses that pass
     the range of a gauge that the design names."""
-    return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor)]
+    return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor), *_unlined(view.sensor)]
+
+
+def _unlined(context: SensorContext) -> list[Finding]:
+    """Findings on the states whose curves give no sensitivity."""
+    return [
+        Finding(
+            "driving",
+            "warning",
+            context.membrane,
+            f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}",
+            "take a driving pressure nearer to 0 kPa or a thicker wall",
+            "this project's: a sensitivity is the slope of a straight line",
+            (0.0, 0.0, state.apex_outer),
+            None,
+        )
+        for state in context.prediction.all_states
+        for event in state.warned
+        if event.kind == NO_LINE
+    ]
 
 
 def _pressed(context: SensorContext) -> list[Finding]:
@@ -147,7 +167,7 @@ def _pressed(context: SensorContext) -> list[Finding]:
 
 
 def _driven(context: SensorContext) -> list[Finding]:
-    rating, last = context.rating, context.prediction.states[-1]
+    rating, last = context.rating, max(context.prediction.all_states, key=lambda state: state.driving_pressure)
     severity = rating.severity(last.driving_pressure)
     if severity is None:
         return []
@@ -156,6 +176,8 @@ def _driven(context: SensorContext) -> list[Finding]:
         text, limit = f"{text}: {rating.basis}", rating.limit
     remedy = rating.remedy_for(last.driving_pressure)
     fix = f"lower pneumatics.driving_pressures_kPa to at most {rating.pressure_kPa:.1f}"
+    if last.held is not None:
+        fix = f"fill it less, to at most {rating.pressure_kPa:.1f} kPa: a lower volume or height in [pneumatics]"
     return [
         Finding(
             "driving",

@@ -1,0 +1,50 @@
+"""States whose figures would mislead: a curve that is no line, and a filling above the rated pressure."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.result import predicted
+from pneutouch.evaluation.sheet import sheet_data
+from pneutouch.mechanics.events import NO_LINE
+from pneutouch.report import sheet_tables
+
+PRESSURES, VOLUMES = "pneumatics.driving_pressures_kPa", "pneumatics.injected_volumes_mL"
+
+
+@pytest.fixture(scope="module")
+def emptied():
+    """Falling at -15.5 kPa, no line at -12 kPa, a line at 0 and 12 kPa."""
+    return evaluate("paper-dome", {PRESSURES: [-15.5, -12, 0, 12]})
+
+
+def test_a_curve_that_falls_or_is_no_line_has_no_figures_but_an_event(emptied):
+    record = predicted(emptied)
+    assert [state.sensitivity_kPa_per_N is None for state in record.states] == [True, True, False, False]
+    assert [state.sensitivity_kPa_per_N is None for state in record.as_drawn] == [True, True, False, False]
+    kinds = [[event.kind for event in state.events if event.kind == NO_LINE] for state in record.states]
+    assert kinds == [[NO_LINE], [NO_LINE], [], []]
+
+
+def test_check_and_the_sheet_warn_of_it(emptied):
+    found = [finding for finding in emptied.findings_alone if finding.rule == "driving"]
+    assert [finding.severity for finding in found] == ["warning", "warning"]
+    sheet = sheet_data(emptied, "0")
+    assert len(sheet_tables.warnings(sheet)) == 2
+    assert [row[3] == sheet_tables.DASH for row in sheet_tables.performance(sheet).rows] == [True, True, False, False]
+
+
+def test_a_filling_above_the_rated_pressure_is_warned_of_and_marked():
+    filled = evaluate("paper-dome", {PRESSURES: [0, 12], VOLUMES: [0.5, 1.5]})
+    low, high = (state.driving_pressure for state in filled.prediction.filled)
+    assert low < filled.rating.pressure < high
+    rating = predicted(filled).rating
+    assert rating is not None and [finding.severity for finding in rating.findings] == ["warning"]
+    assert rating.findings[0].driving_pressure_kPa == pytest.approx(1e3 * high, rel=1e-5)
+    (finding,) = [one for one in filled.findings_alone if one.rule == "driving"]
+    assert finding.excess is not None and finding.excess.measured == pytest.approx(1e3 * high, rel=1e-5)
+    sheet = sheet_data(filled, "0")
+    assert len(sheet_tables.warnings(sheet)) == 1
+    table = sheet_tables.filled(sheet)[-1]
+    assert ["*" in str(row[1]) for row in table.rows] == [False, True]
