@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -59,6 +60,27 @@ def test_a_sweep_of_several_states_a_point_is_refused_with_what_works(tmp_path):
     named = done.stderr.split("--over ")[-1].split()[0]
     again = in_process([*over, "--over", named], tmp_path)
     assert again.returncode == 0, again.stderr
+
+
+def test_a_sweep_over_a_filling_prints_the_states_of_that_filling(prediction, tmp_path):
+    done = in_process(["sweep", "paper-dome", "--over", f"{FILLED}=1,5,7", "--out", "gas.nc"], tmp_path)
+    head, *rows = (re.split(" {2,}", line) for line in done.stdout.splitlines()[:4])
+    shown = [dict(zip(head, row, strict=True)) for row in rows]
+    for row, state in zip(shown, prediction.filled, strict=True):
+        assert float(row["S kPa/N"]) == pytest.approx(float(state.sensitivity_kPa_per_N), abs=6e-4)
+        assert float(row["kPa"]) == pytest.approx(float(state.driving_pressure_kPa), abs=6e-4)
+
+
+def test_a_sweep_over_two_fillings_is_refused(tmp_path):
+    over = ["--over", f"{FILLED}=1,2", "--over", "pneumatics.apex_heights_mm=11,12"]
+    done = in_process(["sweep", "paper-dome", *over, "--out", "two.nc"], tmp_path)
+    assert done.returncode == 2 and not (tmp_path / "two.nc").exists()
+
+
+def test_a_sweep_may_vary_the_filling_of_a_design_that_states_several(tmp_path):
+    pt.load("paper-dome").replace(injected_volumes_mL=[0.5, 1.0]).save(tmp_path / "two.toml")
+    done = in_process(["sweep", "--design", "two.toml", "--over", f"{FILLED}=1,2", "--out", "a.nc"], tmp_path)
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_sweep_into_a_vacuum_keeps_the_pressures_that_hold(tmp_path):

@@ -75,7 +75,8 @@ def sweep(
         machines = ComputeResources(workers, scheduler)
         done = run(plan, target, machines, fresh=fresh, yes=yes, progress=progress)
     with bar("drawing the sensitivity"):
-        rows, written = write_companions(done.path, _MOST)
+        a_point = sum(done.states.values()) // done.points if _FILLED & {key.replace(".", "_") for key in plan.varied} else 1
+        rows, written = write_companions(done.path, _MOST * a_point)
         maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
     _report(done, rows, written, maps, json=json)
     if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
@@ -156,6 +157,10 @@ _FIGURES = {
 }
 """Columns with their decimals, as `predict` shows the same figures."""
 
+_FILLED = {"pneumatics_injected_volumes_mL", "pneumatics_apex_heights_mm"}
+_OF_FILLED = [name for name in _FIGURES if name != "force_range_high_N"]
+"""Swept fields that give states by filling, and the figures known of these states."""
+
 
 def sweep_text(rows: list[dict[str, Any]], count: int, table: Path) -> str:
     """Swept fields, figures and status of the first rows of ``count``; of more also the file that holds them all."""
@@ -163,8 +168,14 @@ def sweep_text(rows: list[dict[str, Any]], count: int, table: Path) -> str:
         return "no state"
     names = list(rows[0])
     swept = names[: names.index("driving_pressure_kPa")]
-    head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *(name for name, _ in list(_FIGURES.values())[1:]), "status"]
-    text = table_text(head, [_cells(row, swept) for row in rows])
+    if _FILLED & {*swept}:
+        head = [*swept, "kPa", *(_FIGURES[name][0] for name in _OF_FILLED), "status"]
+        # Every driving pressure of a point repeats its state by filling.
+        text = table_text(head, list(dict.fromkeys(_filled_cells(row, swept) for row in rows)))
+    else:
+        others = (name for name, _ in list(_FIGURES.values())[1:])
+        head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *others, "status"]
+        text = table_text(head, [_cells(row, swept) for row in rows])
     left = count - len(rows)
     return f"{text}\n... and {left} more: {table}" if left else text
 
@@ -175,6 +186,14 @@ def _cells(row: dict[str, Any], swept: list[str]) -> list[str]:
     interval = "-" if low is None else f"{low:.2f} to {high:.2f}"
     fields = [_field(row[name]) for name in (*swept, "driving_pressure_kPa")]
     return [*fields, sensitivity, interval, *others, row["status"]]
+
+
+def _filled_cells(row: dict[str, Any], swept: list[str]) -> tuple[str, ...]:
+    """Cells of the state by injected gas or apex height."""
+    figures = (_figure(name, row.get(f"filled_{name}", row[name])) for name in _OF_FILLED)
+    pressure_kPa = row["filled_driving_pressure_kPa"]
+    pressure = "-" if pressure_kPa is None else f"{pressure_kPa:.3f}"
+    return (*(_field(row[name]) for name in swept), pressure, *figures, row["status"])
 
 
 def _figure(name: str, value: float | None) -> str:

@@ -79,16 +79,7 @@ def study(plan: SweepPlan, library: Library, *, tried: bool = True) -> SweepStud
     library = CachedLibrary(library.folders)
     source = DesignSource.of(plan.design, library)
     base = source.changed({})
-    for key in FILLINGS:
-        given = plan.settings.get(key, getattr(base.pneumatics, key.partition(".")[2]))
-        if isinstance(given, list) and len(given) > 1:
-            raise InputError(
-                "a point of a sweep has one state of this kind",
-                file=plan.where,
-                key=key,
-                value=given,
-                remedy=f"vary it, as by `over` {key}={given[0]:g}:{given[-1]:g}:{len(given)}",
-            )
+    _check_fillings(plan, base)
     if tried:
         _check(plan, library)
     plan = replace(plan, model=_model(plan, base))
@@ -117,6 +108,24 @@ def study(plan: SweepPlan, library: Library, *, tried: bool = True) -> SweepStud
         "points": plan.points,
     }
     return SweepStudy(plan, source.name, base, files, digest(json_bytes(facts)))
+
+
+def _check_fillings(plan: SweepPlan, base: DesignFile) -> None:
+    """Raise InputError for a plan with several states by filling a point: the dataset holds one."""
+    problem = "a point of a sweep has one state by injected gas or apex height"
+    for index in range(plan.count) if plan.points else range(1):
+        settings = plan.overrides(index)
+        stated = {key: settings.get(key, getattr(base.pneumatics, key.partition(".")[2])) for key in FILLINGS}
+        given = {key: values for key, values in stated.items() if values}
+        if len(given) > 1:
+            first, second = given
+            raise InputError(problem, file=plan.where, key=second, remedy=f"give either it or {first}")
+        for key, values in given.items():
+            if isinstance(values, list) and len(values) > 1:
+                over = f"{key}={','.join(map(str, values))}"
+                raise InputError(
+                    problem, file=plan.where, key=key, value=values, remedy=f"vary it, as by `over` {over}"
+                )
 
 
 def _model(plan: SweepPlan, base: DesignFile) -> str:
