@@ -94,7 +94,7 @@ def build(
         if stack is not None:
             echo(str(stack))
         if not _is_specimen(design) and not _is_3mf(design):
-            report_next("plan", design, *set_words(set_, calibration))
+            report_next("plan", design, *set_words(_from_ambient(set_, evaluation), calibration))
 
 
 @cli.app.command()
@@ -210,6 +210,17 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
     manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     for name, why in manifest.get("left_out", {}).items():
         notify(f"note: {name} is not written: {why}")
+
+
+def _from_ambient(set_: list[str] | None, evaluation: Evaluation) -> list[str]:
+    """The assignments of a build for its campaign, which has no vacuum."""
+    from pneutouch.evaluation.resins import from_ambient
+
+    pressures_kPa = evaluation.scene.design.pneumatics.driving_pressures_kPa
+    if pressures_kPa[0] >= 0.0:
+        return set_ or []
+    kept = from_ambient(pressures_kPa)
+    return [*(text for text in set_ or () if text.partition("=")[0] != kept.partition("=")[0]), kept]
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:

@@ -103,6 +103,12 @@ def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float
         ) from None
 
 
+def from_ambient(pressures_kPa: Sequence[float]) -> str:
+    """The assignment of a design's driving pressures without vacuum, for the command line."""
+    kept = sorted({0.0, *(pressure_kPa for pressure_kPa in pressures_kPa if pressure_kPa >= 0.0)})
+    return f"pneumatics.driving_pressures_kPa=[{', '.join(f'{pressure_kPa:g}' for pressure_kPa in kept)}]"
+
+
 def tested_kPa(scene: ResolvedDesign) -> list[float]:
     """The driving pressures of a design, for runs on a rig and for a reader. Raises InputError for a vacuum."""
     pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
@@ -112,5 +118,6 @@ def tested_kPa(scene: ResolvedDesign) -> list[float]:
             file=scene.where,
             key="pneumatics.driving_pressures_kPa[0]",
             value=pressures_kPa[0],
+            remedy=f"give those alone: --set '{from_ambient(pressures_kPa)}'",
         )
     return pressures_kPa

@@ -1,5 +1,6 @@
 """The print sheet: which body takes which resin on which machine, how it is made step by step, and its order code."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from pneutouch.catalogue import ResolvedDesign
@@ -14,10 +15,14 @@ from pneutouch.units import ML
 from pneutouch.wording import counted
 
 
-def making(assembly: Assembly, pour: SiliconeBatch | None = None) -> list[str]:
-    """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None."""
-    scene = assembly.scene
-    text = filled("making.j2", scene=scene, stands=assembly.stands_up, pour=pour, glue=glue_of(scene), glues=GLUES)
+def making(assembly: Assembly, pour: SiliconeBatch | None = None, rated_kPa: float = math.inf) -> list[str]:
+    """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None.
+
+    It is tested for leaks at its greatest driving pressure, a vacuum as its pressure, but at most at the rated one."""
+    scene, stands = assembly.scene, assembly.stands_up
+    stated_kPa = max(map(abs, scene.design.pneumatics.driving_pressures_kPa))
+    known = {"scene": scene, "stands": stands, "pour": pour, "glue": glue_of(scene), "glues": GLUES}
+    text = filled("making.j2", **known, fill_kPa=min(stated_kPa or 1.0, rated_kPa))
     return [line for line in text.splitlines() if line]
 
 
@@ -76,7 +81,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         calibration=scene.calibration,
         parts=[] if mould is None else [(body, mould.counts[body.name], masses[body.name]) for body in mould.printed],
         facts=[] if mould is None else mould_rows(mould),
-        steps=making(assembly, sheet.pour),
+        steps=making(assembly, sheet.pour, sheet.rating.pressure_kPa),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
