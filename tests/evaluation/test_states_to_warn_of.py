@@ -48,3 +48,9 @@ def test_a_filling_above_the_rated_pressure_is_warned_of_and_marked():
     assert len(sheet_tables.warnings(sheet)) == 1
     table = sheet_tables.filled(sheet)[-1]
     assert ["*" in str(row[1]) for row in table.rows] == [False, True]
+
+
+def test_a_press_that_is_lost_at_first_contact_has_a_record():
+    lost = predicted(evaluate("graded-dome", {PRESSURES: [-21]})).states[0]
+    assert lost.curve.indentation_mm == (0.0,) and lost.curve.tangent_stiffness_N_per_mm == ()
+    assert lost.sensitivity_kPa_per_N is None and NO_LINE in [event.kind for event in lost.events]

@@ -137,11 +137,11 @@ def test_a_sway_is_reported_and_changes_no_figure():
     checked, plain = (predict("x", PAPER.replace(waves=waves, base=None), pressures) for waves in (8, 0))
     for one, other in zip(checked.states, plain.states, strict=True):
         assert (one.range_end, one.figures) == (other.range_end, other.figures)
-        assert [e for e in one.events if e not in one.off_axis] == list(other.events)
-    (event,) = checked.states[0].off_axis
+        assert [e for e in one.events if e not in one.warned] == list(other.events)
+    (event,) = checked.states[0].warned
     assert event.kind == "sway" and event.indentation == pytest.approx(6.75, abs=0.02) and not event.ends_range
     assert "figures beyond are of the axisymmetric path" in event.message
-    assert checked.states[1].off_axis == ()
+    assert checked.states[1].warned == ()
     assert "; sway and lobes are looked for with up to 8 waves around the axis" in checked.assumptions[1]
     assert "; sway and lobes of the dome around its axis are not looked for" in plain.assumptions[1]
 

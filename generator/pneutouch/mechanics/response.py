@@ -164,6 +164,9 @@ def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Arr
 
 
 def tangent_stiffness(indentation: Array, force: Array) -> Array:
-    """Slope dF/d(delta) of force (N) over indentation (mm) at every point (n,), N/mm, by second-order differences."""
+    """Slope dF/d(delta) of force (N) over indentation (mm) at every point (n,), N/mm, by second-order differences;
+    empty for a single point."""
+    if len(force) < 2:
+        return np.empty(0)
     slope: Array = np.gradient(force, indentation, edge_order=2 if len(force) > 2 else 1)
     return slope

@@ -148,6 +148,29 @@ def test_the_limit_point_lies_between_a_lower_and_a_higher_dome(ratio, modulus, 
     assert held.regulated and not lost.regulated
 
 
+@pytest.mark.parametrize("wall", [0.55, 0.58, 0.6, 0.62, 1.0])
+def test_a_thin_wall_states_the_vacuum_that_it_bears(wall):
+    """At 0.58 mm the solver stepped onto the dented branch, and named a third of the vacuum; at 0.6 and 1 mm it failed.
+
+    Reference: 2.02 kPa for 0.55 mm, and a buckling pressure that goes with the wall's square within 10 %."""
+    thin = PAPER.replace(wall_thickness=wall)
+    with pytest.raises(BeyondLimitError) as refused:
+        predict("", thin, [-0.012])
+    assert refused.value.limit == pytest.approx(-2.02e-3 * (wall / 0.55) ** 2, rel=0.1)
+    (state,) = predict("", thin, [0.999 * refused.value.limit]).states
+    assert state.driving_pressure == 0.999 * refused.value.limit
+
+
+def test_the_least_height_that_a_message_names_is_the_least_on_the_way_down():
+    """Emptied, the dome sinks to 10.44 mm and its apex then rises again, to 10.51 mm where it buckles."""
+    with pytest.raises(InputError) as refused:
+        free_states(PAPER, solid_probe(PAPER), [Filling("apex", 10.3)])
+    least = float(refused.value.remedy.split()[-2])
+    assert least < 10.45
+    ((state, _),) = free_states(PAPER, solid_probe(PAPER), [Filling("apex", least)])
+    assert state.outer_apex == pytest.approx(least, rel=1e-6)
+
+
 def test_a_negative_volume_is_a_vacuum_by_a_syringe():
     (state,) = filled(PAPER, -0.1)
     assert -15 * KPA < state.driving_pressure < 0.0

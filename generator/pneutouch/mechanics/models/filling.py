@@ -54,7 +54,9 @@ def free_states(sensor: Sensor, probe: StrainProbe, fillings: Sequence[Filling])
         free = state_where(solid, run, measure, goal)
         if free is None:
             key, unit, scale = _FILLINGS[kind]
-            end = measure(run.states[-1])[0]
+            # The height of a dome that is emptied falls, then rises again.
+            along = [measure(state)[0] for state in run.states]
+            end = min(along) if goal < min(along) else max(along)
             last = (np.floor if end < goal else np.ceil)(1e3 * end / scale) / 1e3
             raise InputError(
                 f"beyond the last state: {run.why_no_limit}",
@@ -108,7 +110,10 @@ def _held(sensor: Sensor, solid: SolidModel, free: FreeState, rest: FreeState) -
 
 def emptied_to(sensor: Sensor, solid: SolidModel, pressure: float) -> Inflation:
     """The dome emptied to a pressure (MPa) below ambient. Raises UnreachableLoadError where it buckles before."""
-    run = while_sound(solid, inflate(solid, to_pressure=pressure), partial(_is_round, sensor, solid), BUCKLED)
+    round_at = partial(_is_round, sensor, solid)
+    # Past its buckling the round dome is no longer followed: the solver may find no equilibrium there.
+    run = inflate(solid, to_pressure=pressure, enough=lambda state: not round_at(state))
+    run = while_sound(solid, run, round_at, BUCKLED)
     last = run.states[-1].pressure
     if last > pressure:
         raise UnreachableLoadError(pressure, last, BUCKLED)

@@ -164,12 +164,15 @@ def inflate(
         if ended is not None:
             return Inflation(path, limit, ended)
         step = at_volume(solid, path, last.unit.volume * (1.0 + sign * growth))
-        if isinstance(step, NewtonFailure):
+        if isinstance(step, NewtonFailure) or (sign < 0.0 and _jumped(last, step)):
             growth *= 0.4
-            if growth < _SMALLEST_GROWTH and limit is not None:
-                return Inflation(path, limit, f"no equilibrium past {last.volume:.4g} mm3: {step.why}")
+            if growth < _SMALLEST_GROWTH and sign < 0.0:
+                return Inflation(path, last, "the wall snaps inwards: it buckles")
             if growth < _SMALLEST_GROWTH:
-                raise NoConvergenceError(f"volume {last.volume:.4g} mm3", step.why, "a finer mesh")
+                why = step.why if isinstance(step, NewtonFailure) else ""
+                if limit is not None:
+                    return Inflation(path, limit, f"no equilibrium past {last.volume:.4g} mm3: {why}")
+                raise NoConvergenceError(f"volume {last.volume:.4g} mm3", why, "a finer mesh")
             continue
         path.append(step)
         growth = min(1.3 * growth, _LARGEST_GROWTH if sign > 0.0 else _EMPTYING)
@@ -179,6 +182,13 @@ def inflate(
         elif limit is None and last.stable and not step.stable:
             return Inflation(path, last, "another mode than the volume goes soft first: the wall buckles")
     return Inflation(path, limit, "too many volume steps")
+
+
+def _jumped(a: FreeState, b: FreeState) -> bool:
+    """True if a state lies on another branch than the one before: the mean slope of the pressure is below both ends'.
+    The solver finds the dented dome where it steps over the buckling of the round one."""
+    mean = (b.pressure - a.pressure) / (b.volume - a.volume)
+    return mean < min(a.stiffness, b.stiffness) - 0.2 * abs(a.stiffness)
 
 
 def _ended(
