@@ -8,6 +8,7 @@ import shutil
 import pytest
 
 from pneutouch import __version__
+from pneutouch.cli.show import NO_RECIPE, OF_A_JOB
 from pneutouch.export.threemf import threemf
 from tests.export.threemf_files import with_metadata, with_recipe
 
@@ -65,9 +66,15 @@ def test_show_json_is_one_document(command, built_file, evaluated):
 def test_a_3mf_of_another_maker_is_shown_without_recipe(command, foreign):
     result = command("show", "foreign.3mf")
     assert result.returncode == 0
-    assert "no recipe: not built by pneutouch" in result.stdout
+    assert NO_RECIPE in result.stdout and OF_A_JOB not in result.stdout
     assert "\x85" not in result.stdout and "\u202e" not in result.stdout
     assert json.loads(command("show", "foreign.3mf", "--json").stdout)["recipe"] is None
+
+
+def test_a_print_job_of_a_build_is_said_to_be_ours(command, built, tmp_path):
+    shutil.copy(next((built(NAME) / "jobs").glob("*.3mf")), tmp_path / "job.3mf")
+    result = command("show", "job.3mf")
+    assert OF_A_JOB in result.stdout and NO_RECIPE not in result.stdout
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 import pneutouch as pt
 from pneutouch.mechanics import predict
@@ -12,6 +13,7 @@ from pneutouch.mechanics.response import SHALLOW, figures
 from pneutouch.mechanics.solid.indent import indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.selection.candidates import REQUIREMENTS
+from pneutouch.spec.target import TargetFigures
 from pneutouch.units import KPA
 from tests.mechanics.solid.test_graded import sensor
 
@@ -65,3 +67,13 @@ def test_a_design_is_selected_by_its_stiffness_at_a_depth():
     design = pt.load("paper-dome").replace(material=best["material"], **changes, dead_volume_mL=best["dead_volume_mL"])
     (state,) = design.predict([best["driving_pressure_kPa"]]).states
     assert state.stiffness_at_1mm_N_per_mm == pytest.approx(best["stiffness_at_1mm_N_per_mm"], rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("depth", "bounds", "named"), [(3, {}, 3), (2, {"stiffness_least_N_per_mm": 0.9}, 1)], ids=["no bound", "no depth"]
+)
+def test_a_depth_without_bound_and_another_depth_are_told_apart(depth, bounds, named):
+    with pytest.raises(ValidationError) as refused:
+        TargetFigures.model_validate({"sensitivity_kPa_per_N": 1.9, "stiffness_depth_mm": depth, **bounds})
+    (error,) = refused.value.errors()
+    assert len(error["ctx"]["error"].fields) == named

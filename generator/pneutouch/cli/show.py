@@ -36,12 +36,14 @@ def show(
         print_answer(run(file), show_text, json=json)
 
 
-NO_RECIPE = "no recipe: not built by pneutouch, so it can be shown but not rebuilt"
+NO_RECIPE = "no recipe: it cannot be built again"
+OF_A_JOB = "no recipe: a file of pneutouch to print from; to build again, take the design's 3MF, a folder above its jobs"
 
 
 def show_text(package: ShownPackage) -> str:
     """Bodies, metadata and recipe, one block each; control characters of foreign files are left out."""
-    recipe = [NO_RECIPE] if package.recipe is None else _recipe(package.recipe)
+    own = package.metadata.get("Application", "").startswith("pneutouch")
+    recipe = [OF_A_JOB if own else NO_RECIPE] if package.recipe is None else _recipe(package.recipe)
     blocks = [_bodies(package), _table("metadata", package.metadata), *recipe]
     lines = "\n\n".join(block for block in blocks if block).split("\n")
     return "\n".join("".join(letter for letter in line if letter.isprintable()) for line in lines)

@@ -80,11 +80,12 @@ class TargetFigures(Table):
                 "stiffness_most_N_per_mm",
             )
         depth = self.stiffness_depth_mm
-        if depth is not None and (depth not in (1, 3) or least is most is None):
-            text = f"stiffness_depth_mm = {depth:g} must be 1 or 3, and bound"
-            raise FieldsError(
-                f"{text} stiffness_least_N_per_mm or stiffness_most_N_per_mm at this depth", "stiffness_depth_mm"
-            )
+        if depth is not None and depth not in (1, 3):
+            raise FieldsError(f"stiffness_depth_mm = {depth:g}: must be 1 or 3", "stiffness_depth_mm")
+        if depth is not None and least is most is None:
+            bounds = "stiffness_least_N_per_mm", "stiffness_most_N_per_mm"
+            text = f"stiffness_depth_mm = {depth:g} bounds nothing: give {' or '.join(bounds)} too"
+            raise FieldsError(text, "stiffness_depth_mm", *bounds)
         if all(v is None for v in (self.sensitivity_kPa_per_N, self.force_range_N, least, most)):
             raise FieldsError(
                 "give at least one of sensitivity_kPa_per_N, force_range_N and a stiffness",

@@ -5,11 +5,13 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
+from pneutouch.tables.unit_words import UNITS
 
 CLOCK = "X_Value"
 """Column name for times in a file that states start and step of a clock instead; LabVIEW's name for times."""
@@ -171,6 +173,9 @@ def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
         place = layout.place(name)
         if place is None:
             hint = " Columns are separated by commas, semicolons or tabs." if len(header) < 2 else ""
+            column, colon, unit = name.rpartition(":")
+            if colon and layout.place(column) is not None:
+                hint = f" Of the column {column} it gives no known unit.{nearest(unit, chain(*UNITS.values()))}"
             hint = hint or nearest(name, set(header))
             problem = f"missing from the header '{', '.join(header)[:80]}' (row {layout.header_row}).{hint}"
             raise InputError(problem, file=path, key=f"column {name}")

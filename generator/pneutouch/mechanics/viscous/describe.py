@@ -263,7 +263,7 @@ def _glass(material: Material) -> list[str]:
     at = material.glass_transition_C
     near = "" if at is None else f"at {at.least:g} to {at.most:g} °C"
     then = "near it hysteresis may be over 30 %, and modulus and times change within a few kelvin"
-    return [f"{material.title} turns to glass {near}: {then}"] if near else []
+    return [f"the membrane's resin turns to glass {near}: {then}"] if near else []
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
