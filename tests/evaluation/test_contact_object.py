@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.catalogue import DEFAULT
+from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import predicted
@@ -34,8 +34,9 @@ def test_the_plate_of_one_table_stands_in_both():
 
 def test_a_plate_by_its_new_key_answers_as_by_its_old_one():
     driven = {"pneumatics.driving_pressures_kPa": [12.0]}
-    old = evaluate(DEFAULT, {**driven, "indentation.plate_diameter_mm": 25.0}, model="atlas")
-    new = evaluate(DEFAULT, {**driven, "contact.plate_diameter_mm": 25.0}, model="atlas")
+    default = DesignSource("default", {}, "the default design")
+    old = evaluate(default, {**driven, "indentation.plate_diameter_mm": 25.0}, model="atlas")
+    new = evaluate(default, {**driven, "contact.plate_diameter_mm": 25.0}, model="atlas")
     assert data(predicted(old)) == data(predicted(new))
 
 

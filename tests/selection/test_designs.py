@@ -7,11 +7,14 @@ from functools import cache
 import numpy as np
 import pytest
 
+from pneutouch.catalogue import Library
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
+from pneutouch.output.new import PRINTED_PORT
 from pneutouch.selection.candidates import margins, nearer, search
 from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
+from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.select import SelectionRun, select
 from tests.selection.targets import FINGERTIP, answer, document, target
 
@@ -25,7 +28,7 @@ def fingertip() -> SelectionRun:
 def solid(fingertip, tmp_path_factory):
     """A design of the fingertip's as `build` would take it, predicted by the solid at its driving pressure; once each."""
     path = tmp_path_factory.mktemp("base") / "empty.toml"
-    path.write_text("")
+    path.write_text(f'connector.port = "{fingertip.base.design.connector.port}"\n')
 
     @cache
     def run(number: int):
@@ -41,6 +44,20 @@ def solid(fingertip, tmp_path_factory):
 def test_a_fingertip_gets_designs_of_several_resins(fingertip):
     assert len(fingertip.answer.designs) >= 3
     assert len({choice.resin.name for choice in fingertip.answer.designs}) >= 2
+
+
+def test_the_design_written_without_a_base_passes_the_rules_on_its_port(fingertip, solid):
+    found, _ = solid(0)
+    assert fingertip.base.design.connector.port == PRINTED_PORT
+    assert [one for one in found.findings if one.severity != "note" and one.body == "connector"] == []
+
+
+@pytest.mark.parametrize(
+    ("setting", "port"), [({"assignments": ["connector.port=thread-M3"]}, "thread-M3"), ({"base": "paper-dome"}, "barb-4x2.5")]
+)
+def test_a_port_that_is_given_is_kept(setting, port):
+    given = target({"sensitivity_kPa_per_N": 1.9}, setting=setting)
+    assert base_scene(given, "test", Library.default()).design.connector.port == port
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pneutouch.catalogue.library import KINDS, Library, user_folder
     from pneutouch.catalogue.scene import (
-        DEFAULT,
         DesignSource,
         ResolvedDesign,
         check_scene,
@@ -18,11 +17,10 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "library": ("KINDS", "Library", "user_folder"),
-    "scene": ("DEFAULT", "DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
+    "scene": ("DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
 }
 
 __all__ = [
-    "DEFAULT",
     "KINDS",
     "DesignSource",
     "Library",

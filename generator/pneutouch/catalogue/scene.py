@@ -125,10 +125,6 @@ def split_calibration(design: str, library: Library) -> tuple[str, str | None]:
     return (design, None) if "/" in calibration or calibration.endswith(".toml") else (plain, calibration)
 
 
-DEFAULT = DesignSource("default", {}, "the default design")
-"""Source of the design in which every field has its default."""
-
-
 def load_scene(
     design: str | DesignSource, changes: Changes | None = None, library: Library | None = None
 ) -> ResolvedDesign:

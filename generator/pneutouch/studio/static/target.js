@@ -17,7 +17,7 @@ const MAIN = [
   "setting.base",
 ];
 /** What stands in place of a value that is left out. */
-const LEFT_OUT = { "target.fits": "finger:20", "setting.profile": "that of the base", "setting.base": "the default design" };
+const LEFT_OUT = { "target.fits": "finger:20", "setting.profile": "that of the base", "setting.base": "the default design, port push-in-4" };
 
 class Target extends JobPage {
   constructor(root, page, declared) {

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import read_given
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
@@ -18,6 +18,7 @@ from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.output.new import PRINTED_PORT
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin
 from pneutouch.spec.design import CALIBRATION, DesignFile
@@ -209,7 +210,9 @@ def with_connector(scene: ResolvedDesign) -> str:
 def _source(target: Target, library: Library) -> DesignSource:
     """The base, else the default; without calibration and accepted warnings, which hold for its own membrane alone."""
     if target.setting.base is None:
-        return DEFAULT
+        # As in a new design, whose port no rule finds fault with.
+        port = {"connector": {"port": PRINTED_PORT}} if target.have.holds("ports", PRINTED_PORT) else {}
+        return DesignSource("default", port, f"the default design{f', port {PRINTED_PORT}' if port else ''}")
     try:
         source = DesignSource.of(target.setting.base, library)
     except PneutouchError as error:
