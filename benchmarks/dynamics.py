@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from benchmarks.store import store
-from pneutouch.catalogue.scene import DEFAULT
+from pneutouch.catalogue import DesignSource
 from pneutouch.evaluation.dynamics import DynamicState
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
@@ -44,10 +44,10 @@ def peaks() -> list[list[float]]:
 
 def states() -> dict[float, DynamicState]:
     """The default design without driving pressure, by the length of its tube, mm."""
+    default = DesignSource("default", {}, "the default design")
+    at_rest = {"pneumatics.driving_pressures_kPa": [0.0]}
     return {
-        length: evaluate(
-            DEFAULT, {"pneumatics.tube_length_mm": length, "pneumatics.driving_pressures_kPa": [0.0]}, model="atlas"
-        ).bandwidth.states[0]
+        length: evaluate(default, {**at_rest, "pneumatics.tube_length_mm": length}, model="atlas").bandwidth.states[0]
         for length in LENGTHS
     }
 
