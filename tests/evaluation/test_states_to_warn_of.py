@@ -7,8 +7,9 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import predicted
 from pneutouch.evaluation.sheet import sheet_data
+from pneutouch.evaluation.sheet_data import ContactChart
 from pneutouch.mechanics.events import NO_LINE
-from pneutouch.report import sheet_tables
+from pneutouch.report import conditions, curves, sheet_tables
 
 PRESSURES, VOLUMES = "pneumatics.driving_pressures_kPa", "pneumatics.injected_volumes_mL"
 
@@ -54,3 +55,22 @@ def test_a_press_that_is_lost_at_first_contact_has_a_record():
     lost = predicted(evaluate("graded-dome", {PRESSURES: [-21]})).states[0]
     assert lost.curve.indentation_mm == (0.0,) and lost.curve.tangent_stiffness_N_per_mm == ()
     assert lost.sensitivity_kPa_per_N is None and NO_LINE in [event.kind for event in lost.events]
+
+
+def test_the_chart_of_inflation_holds_a_vacuum_and_its_sheet_the_table_off_the_centre(emptied):
+    sheet = sheet_data(emptied, "0")
+    panel = curves.inflation(emptied.prediction)
+    assert panel.ylim[0] < -15.5 and panel.ylim[1] > 39.0
+    assert isinstance(sheet.contact, ContactChart) and sheet.contact.driving_pressures_kPa == (0.0, 12.0)
+    # Every reason for a missing interval stands beside its table, once, and no cell of the rest is empty.
+    assert len(sheet_tables.unknown_intervals(sheet)) == 1
+    assert [row[1] for row in conditions.environment(sheet)[:3] if "–" in row[1]] == []
+    assert all(tile.value != "–" for tile in sheet_tables.key_figures(sheet))
+
+
+def test_the_chart_of_tuning_joins_its_fillings_in_order_of_their_gas():
+    typed = evaluate("paper-dome", {PRESSURES: [0, 12], VOLUMES: [5, 1, 3]})
+    chart = sheet_data(typed, "0").tuning
+    assert chart is not None
+    drawn = [value for _, value in chart.filled_kPa_per_N]
+    assert drawn == sorted(drawn, reverse=True)

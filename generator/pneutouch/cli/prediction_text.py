@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import WARNED
 from pneutouch.results.record import SENSITIVITY_KEY
+from pneutouch.results.uncertainty import unknown_at
 from pneutouch.wording import SIMULATED, counted, held_by, tenths_below
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
         *([] if error.model_choice is None else [f"model {prediction.model}: {error.model_choice}"]),
-        *_uncertainty(prediction.states[-1]),
+        *_uncertainty(prediction.states),
         *_anywhere(prediction.contact_anywhere),
         *_viscous(prediction.viscous),
         *dynamics_lines(prediction.dynamics),
@@ -219,12 +220,11 @@ def _interval(ends: IntervalRecord | None) -> str:
     return "-" if ends is None else f"{ends.low:.2f} to {ends.high:.2f}"
 
 
-def _uncertainty(state: StateRecord) -> list[str]:
-    """Line on what to measure first, or on why the uncertainty is not known."""
-    assert state.uncertainty is not None
-    if state.uncertainty.unknown is not None:
-        return [f"uncertainty not known: {state.uncertainty.unknown}"]
-    return [f"at {state.driving_pressure_kPa:g} kPa: {state.uncertainty.summary}"]
+def _uncertainty(states: Sequence[StateRecord]) -> list[str]:
+    """Lines on where and why the uncertainty is not known, and on what to measure first for the highest pressure."""
+    known = [(state.driving_pressure_kPa, state.uncertainty) for state in states if state.uncertainty is not None]
+    lines, (highest_kPa, last) = unknown_at(known), known[-1]
+    return lines if last.unknown is not None else [*lines, f"at {highest_kPa:g} kPa: {last.summary}"]
 
 
 def _viscous(viscous: Viscous) -> list[str]:

@@ -41,9 +41,11 @@ _DIGITS = 4
 
 
 def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart | str:
-    """Errors of the force read at the lowest and the highest driving pressure; or the reason why they are unknown."""
-    states = prediction.states[:1] + prediction.states[1:][-1:]
-    why = place_unknown(prediction, sensor, states)
+    """Errors of the force read at the lowest driving pressure from ambient on and at the highest; or the reason why they
+    are unknown."""
+    blown = [state for state in prediction.states if state.driving_pressure >= 0.0]
+    states = blown[:1] + blown[1:][-1:]
+    why = place_unknown(prediction, sensor, states) if blown else "its table has no states below ambient pressure"
     if why is not None:
         return why
     assert prediction.limits.limit_point is not None

@@ -242,9 +242,10 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
         prediction.states,
         anywhere=scene.design.contact.anywhere,
     )
+    by_gas = sorted(prediction.filled, key=lambda state: state.held.injected if state.held else 0.0)
     working, filled = (
         tuple((s.driving_pressure / KPA, s.figures.sensitivity) for s in states if s.figures)
-        for states in (prediction.states, prediction.filled)
+        for states in (prediction.states, by_gas)
     )
     return TuningChart(drawn, low, high, dict(working), filled_kPa_per_N=filled)
 

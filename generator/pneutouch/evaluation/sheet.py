@@ -105,7 +105,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         curves=evaluation.curves,
         as_drawn=evaluation.as_drawn,
     )
-    if unknown(sensor, prediction.model) is not None:
+    if unknown(sensor, prediction.model) is not None or states[-1].driving_pressure < 0.0:
         return sheet
     # The design's own pressures are shown, above the rated one too.
     tuned = tuning(evaluation, max(evaluation.rating.pressure, states[-1].driving_pressure))

@@ -28,11 +28,12 @@ def environment(sheet: SheetData) -> list[list[str]]:
 
 
 def _air(sheet: SheetData) -> list[list[str]]:
-    """Rows on zero drift and fast contact at the lowest and the highest driving pressure.
+    """Rows on zero drift and fast contact at the lowest driving pressure from ambient on and at the highest.
 
     Outside the atlas the drift is that at the lowest one, and fast contact is unknown."""
     gas, states = sheet.gas, sheet.prediction.states
-    ends = [0, len(states) - 1] if len(states) > 1 and gas is not None else [0]
+    first = next((k for k, state in enumerate(states) if state.driving_pressure >= 0.0), 0)
+    ends = sorted({first, len(states) - 1}) if gas is not None else [0]
     at = " and ".join(f"{states[k].driving_pressure / KPA:g}" for k in ends) + " kPa"
 
     def values(numbers: Array, form: str, unit: str) -> str:
@@ -83,7 +84,8 @@ def gauge_volume(sheet: SheetData) -> str:
 
 def detection(sheet: SheetData) -> list[list[str]]:
     """Rows (quantity, value, basis) on the smallest force detected, also at first contact, where it is known."""
-    reading, forces = sheet.gauge, sheet.gauge.states
+    reading = sheet.gauge
+    forces = [one for one in reading.states if one.smallest_force_N is not None] or reading.states
     ends = forces if len(forces) < 2 else (forces[0], forces[-1])
     at = " and ".join(f"{one.driving_pressure_kPa:g}" for one in ends) + " kPa"
     if reading.threshold_kPa is None:

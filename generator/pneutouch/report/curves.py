@@ -159,8 +159,8 @@ def inflation(prediction: SensorPrediction) -> Panel:
             at = float(np.interp(pressure / KPA, p[: peak + 1], height[: peak + 1])), pressure / KPA
             lines.append(_point(at, marker, 5))
             notes.append(Note(name, at, (0, -1)))
-    top = (0, 1.28 * float(p.max()))
-    return Panel("inner apex height  (mm)", "driving pressure  (kPa)", tuple(lines), tuple(notes), ylim=top)
+    ends = 1.28 * min(0.0, float(p.min()), *own[1]), 1.28 * float(p.max())
+    return Panel("inner apex height  (mm)", "driving pressure  (kPa)", tuple(lines), tuple(notes), ylim=ends)
 
 
 def _point(at: tuple[float, float], marker: str, size: float) -> PlotLine:

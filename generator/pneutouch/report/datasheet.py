@@ -119,6 +119,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
         "Performance",
         sheet_tables.performance(sheet),
         Text(prose.WORDS["performance"]["note"], "muted"),
+        Items(sheet_tables.unknown_intervals(sheet)),
         Items(sheet_tables.quiet_events(sheet)),
         *sheet_tables.as_drawn(sheet),
         *sheet_tables.filled(sheet),

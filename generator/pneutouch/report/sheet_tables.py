@@ -12,14 +12,17 @@ from pneutouch.report.certainty import interval
 from pneutouch.report.conditions import NOT_TESTED, gauge_range, gauge_volume
 from pneutouch.report.numbers import DASH
 from pneutouch.results.record import SENSITIVITY_KEY
+from pneutouch.results.uncertainty import unknown_at
 from pneutouch.units import KPA, ML
 from pneutouch.wording import held_by
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
-    """The six tiles with the key figures on the first page, at the least driving pressure and the greatest rated."""
+    """The six tiles with the key figures on the first page, at the least and the greatest rated driving pressure of
+    those with figures."""
     states = sheet.prediction.states
-    last = max((k for k, state in enumerate(states) if not _is_above(sheet, state)), default=0)
+    rated = [k for k, state in enumerate(states) if state.figures and not _is_above(sheet, state)] or [0]
+    first, last = rated[0], rated[-1]
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
@@ -29,7 +32,7 @@ def key_figures(sheet: SheetData) -> list[Tile]:
     return [
         *(
             Tile("Sensitivity", _sensitivity(states[k]), "kPa/N", _condition(sheet, k) + _drawn(sheet, k, _sensitivity))
-            for k in (0, last)
+            for k in (first, last)
         ),
         Tile("Force range", _range(states[last]), "N", reach),
         Tile("Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary),
@@ -65,6 +68,14 @@ def quiet_events(sheet: SheetData) -> list[str]:
                 place = f"{event.indentation:.2f} mm and {force:.1f} N at {state.driving_pressure / KPA:g} kPa"
                 seen.setdefault((event.kind, event.message), []).append(place)
     return [f"Within the range, {kind} from {', '.join(at)}: {words}." for (kind, words), at in seen.items()]
+
+
+def unknown_intervals(sheet: SheetData) -> list[str]:
+    """Reasons for the states without interval, if others have one; else the section Uncertainty gives the reason."""
+    kPa = [state.driving_pressure / KPA for state in sheet.prediction.states]
+    known = any(one.unknown is None for one in sheet.uncertainty)
+    reasons = unknown_at(zip(kPa, sheet.uncertainty, strict=True)) if known else []
+    return [f"{text[:1].upper()}{text[1:]}." for text in reasons]
 
 
 def warnings(sheet: SheetData) -> list[str]:
