@@ -92,8 +92,8 @@ def _only(*free: int) -> dict[int, float]:
 FRICTION, RIM, VOLUME, OFFSET, GROWN, LIMIT, HOLD, WALL, SHARED = range(RESIN)
 HYPOTHESES: dict[str, dict[int, float]] = {
     "steps of 0.5 mm, the files' moduli": _only(),
-    "and a force limit of 100 N": _only() | {LIMIT: 100.0},
-    "and a third of Gent's modulus for the two hard resins": _only() | {LIMIT: 100.0} | HARD,
+    "steps and a force limit of 100 N": _only() | {LIMIT: 100.0},
+    "steps, force limit and a third of Gent's modulus for the two hard resins": _only() | {LIMIT: 100.0} | HARD,
     "third of Gent's modulus without a force limit": _only() | HARD,
     "moduli in their ranges": _only(*TABLE),
     "moduli in their ranges, force limit": _only(*TABLE, LIMIT),
@@ -230,7 +230,7 @@ def fitted(name: str, left_out: int | None = None, seed: int = 1) -> Sample:
     return sample(log_of, len(UNKNOWNS) - len(fixed), seed)
 
 
-def foretold(shares: Array, fixed: dict[int, float], seed: int = 2) -> Array:
+def left_out_table(shares: Array, fixed: dict[int, float], seed: int = 2) -> Array:
     """Predicted tables (n, 7, 3) with all scatter: both sensitivities (kPa/N) and their ratio."""
     unknowns, random = values(shares, fixed), np.random.default_rng(seed)
     cells = np.log(predicted(unknowns))
@@ -240,13 +240,13 @@ def foretold(shares: Array, fixed: dict[int, float], seed: int = 2) -> Array:
 
 
 def compute() -> dict[str, Any]:
-    """All posteriors: evidences, draws of that with everything open, twice, and tables foretold for each resin left out."""
+    """All posteriors: evidences, draws of that with everything open, twice, and tables predicted for each resin left out."""
     jobs = [("everything", None, 2), *((name, None, 1) for name in reversed(HYPOTHESES))]
     jobs += [("everything", k, 1) for k in range(len(RESINS))]
     with ProcessPoolExecutor(2) as pool:
         found = dict(zip(jobs, pool.map(fitted, *zip(*jobs, strict=True)), strict=True))
     every = [found["everything", None, seed].shares for seed in (1, 2)]
-    left = [foretold(found["everything", k, 1].shares, {})[:, k] for k in range(len(RESINS))]
+    left = [left_out_table(found["everything", k, 1].shares, {})[:, k] for k in range(len(RESINS))]
     best = {name: _middle(found[name, None, 1].shares, fixed) for name, fixed in HYPOTHESES.items()}
     return {
         "evidence": {name: round(found[name, None, 1].log_evidence, 3) for name in HYPOTHESES},

@@ -115,13 +115,13 @@ def _once(k: int, label: str) -> str | None:
 
 
 def protocol() -> str:
-    """Table S1 and its ratios beside those foretold for each resin from the other six; priors and posteriors."""
+    """Table S1 and its ratios beside those predicted for each resin from the other six; priors and posteriors."""
     found = stored("protocol")["summary"]
     with figure(178.0, 150.0) as drawn:
         axes = drawn.subplot_mosaic([[0, 1, 2], [3, 3, 3]], height_ratios=(1.0, 1.6))
         titles = ("S at 0 kPa  (kPa/N)", "S at 22 kPa  (kPa/N)", "S(22) / S(0)")
         for k, title in enumerate(titles):
-            _foretold_panel(axes[k], found, k)
+            _predicted_panel(axes[k], found, k)
             axes[k].set(title=title, ylim=(0.0 if k < 2 else 0.5, None))
         _unknowns_panel(axes[3], found["unknowns"])
         labels = [axes[k].get_legend_handles_labels() for k in (0, 3)]
@@ -130,13 +130,13 @@ def protocol() -> str:
         return svg(drawn)
 
 
-def _foretold_panel(ax: Axes, found: dict[str, Any], k: int) -> None:
+def _predicted_panel(ax: Axes, found: dict[str, Any], k: int) -> None:
     measured = np.array(found["measured"])[:, k]
     low, middle, high = (np.array(found["left_out"][key])[:, k] for key in ("low", "middle", "high"))
     errors = np.array(found["default"]["cells"])
     off = errors[:, k] if k < 2 else np.array(found["default"]["ratios"])
     at = np.arange(measured.size)
-    ax.bar(at, high - low, bottom=low, width=0.6, fc=FAINT, ec="none", label="foretold from the others, 90 %")
+    ax.bar(at, high - low, bottom=low, width=0.6, fc=FAINT, ec="none", label="predicted from the others, 90 %")
     ax.plot(at, middle, "_", color=INK, ms=8, ls="none")
     ax.plot(at, measured * (1.0 + off), "o", color=INK, mfc="white", mew=0.7, ms=3.8, ls="none", label="default")
     ax.plot(at, measured, "D", color=ACCENT, ms=4.2, ls="none", label="measured")

@@ -76,7 +76,7 @@ def design_template(title: str, values: Mapping[str, Any] | None = None, note: s
     by table and key; [mould], [cast_ring], [accepted] and keys without a table are written only if they are in
     ``values``. ``note`` replaces the second sentence of the first line."""
     chosen = values or {}
-    blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out; shown are the defaults.'}"]
+    blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out. The values are the defaults.'}"]
     blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]
     for key in DesignFile.model_fields:
         model = table_of(DesignFile, key)
