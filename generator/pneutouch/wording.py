@@ -5,7 +5,7 @@ Numbers are rounded because their last bits differ between processors, and no fi
 
 import math
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -67,3 +67,12 @@ def held_by(regulated: bool, sealed: bool) -> str:
 def counted(count: int, one: str, many: str = "") -> str:
     """A count with its noun: ``1 design``, ``2 designs``; ``many`` is the plural if it is not ``one`` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def unknown_at(reasons: Iterable[tuple[float, str | None]]) -> list[str]:
+    """Reasons why uncertainties are not known (None: one is), each with its driving pressures, kPa, where they differ."""
+    pressures: dict[str | None, list[str]] = {}
+    for pressure_kPa, why in reasons:
+        pressures.setdefault(why, []).append(f"{pressure_kPa:g}")
+    places = {why: "" if len(pressures) == 1 else f" at {', '.join(at)} kPa" for why, at in pressures.items()}
+    return [f"uncertainty not known{place}: {why}" for why, place in places.items() if why is not None]

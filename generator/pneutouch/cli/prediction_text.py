@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import WARNED
 from pneutouch.results.record import SENSITIVITY_KEY
-from pneutouch.results.uncertainty import unknown_at
-from pneutouch.wording import SIMULATED, counted, held_by, tenths_below
+from pneutouch.wording import SIMULATED, counted, held_by, tenths_below, unknown_at
 
 if TYPE_CHECKING:
     from pneutouch.printability import Finding
@@ -222,9 +221,10 @@ def _interval(ends: IntervalRecord | None) -> str:
 
 def _uncertainty(states: Sequence[StateRecord]) -> list[str]:
     """Lines on where and why the uncertainty is not known, and on what to measure first for the highest pressure."""
-    known = [(state.driving_pressure_kPa, state.uncertainty) for state in states if state.uncertainty is not None]
-    lines, (highest_kPa, last) = unknown_at(known), known[-1]
-    return lines if last.unknown is not None else [*lines, f"at {highest_kPa:g} kPa: {last.summary}"]
+    last = states[-1].uncertainty
+    assert last is not None
+    summary = [] if last.summary is None else [f"at {states[-1].driving_pressure_kPa:g} kPa: {last.summary}"]
+    return [*unknown_at((s.driving_pressure_kPa, s.uncertainty and s.uncertainty.unknown) for s in states), *summary]
 
 
 def _viscous(viscous: Viscous) -> list[str]:

@@ -13,6 +13,7 @@ from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts import Assembly
 from pneutouch.parts.air_path import AirPiece, air_path
 from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
+from pneutouch.spec.gauge import UNKNOWN_END
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
 
@@ -23,10 +24,6 @@ GAUGE_RATE = "sampling of the gauge"
 """Name of the limit of the bandwidth that the gauge sets; the other limit is named ``line``."""
 
 _DIGITS = 6
-
-UNKNOWN_END = 150.0
-"""Greatest gas volume, mm3, taken for a gauge whose maker states none: dead-ended tubes of 1.37 mm bore and 0.2 to 2 m
-resonate 6 to 25 % below a line with a stated 4.7 mm3, mostly explained by 150 mm3 (curves read off a figure)."""
 
 EXCESS_GAIN, LONG = (1.5, 1.06), 1000.0
 """Greatest computed over measured gain of these tubes at the resonance: shorter than 1000 mm, and from there on."""

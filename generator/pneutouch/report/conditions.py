@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.dynamics import UNKNOWN_END
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
 from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH
 from pneutouch.report.prose import WORDS
+from pneutouch.spec.gauge import UNKNOWN_END
 from pneutouch.units import KPA, ML
 from pneutouch.wording import tenths_below
 

@@ -12,9 +12,8 @@ from pneutouch.report.certainty import interval
 from pneutouch.report.conditions import NOT_TESTED, gauge_range, gauge_volume
 from pneutouch.report.numbers import DASH
 from pneutouch.results.record import SENSITIVITY_KEY
-from pneutouch.results.uncertainty import unknown_at
 from pneutouch.units import KPA, ML
-from pneutouch.wording import held_by
+from pneutouch.wording import held_by, unknown_at
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
@@ -72,10 +71,10 @@ def quiet_events(sheet: SheetData) -> list[str]:
 
 def unknown_intervals(sheet: SheetData) -> list[str]:
     """Reasons for the states without interval, if others have one; else the section Uncertainty gives the reason."""
-    kPa = [state.driving_pressure / KPA for state in sheet.prediction.states]
-    known = any(one.unknown is None for one in sheet.uncertainty)
-    reasons = unknown_at(zip(kPa, sheet.uncertainty, strict=True)) if known else []
-    return [f"{text[:1].upper()}{text[1:]}." for text in reasons]
+    states = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
+    reasons = [(state.driving_pressure / KPA, one.unknown) for state, one in states]
+    known = any(why is None for _, why in reasons)
+    return [f"{text[:1].upper()}{text[1:]}." for text in unknown_at(reasons) if known]
 
 
 def warnings(sheet: SheetData) -> list[str]:

@@ -1,6 +1,6 @@
 """The uncertainty of the figures of one state."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -103,12 +103,3 @@ class UncertaintyRecord:
     def known(self) -> Mapping[str, FigureRecord]:
         """Figures with their uncertainty by name; empty where it is unknown."""
         return self.figures or {}
-
-
-def unknown_at(records: Iterable[tuple[float, UncertaintyRecord]]) -> list[str]:
-    """Reasons why the uncertainty is not known, by records at driving pressures, kPa; with these where they differ."""
-    pressures: dict[str | None, list[str]] = {}
-    for pressure_kPa, record in records:
-        pressures.setdefault(record.unknown, []).append(f"{pressure_kPa:g}")
-    places = {why: "" if len(pressures) == 1 else f" at {', '.join(at)} kPa" for why, at in pressures.items()}
-    return [f"uncertainty not known{place}: {why}" for why, place in places.items() if why is not None]

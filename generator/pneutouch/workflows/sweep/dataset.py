@@ -25,10 +25,11 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_pieces
-from pneutouch.workflows.sweep.grid import FILLINGS, PRESSURES, SweepPlan, check_dense, takes_words
+from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import FinishedPoints, Journal, check_output
 from pneutouch.workflows.sweep.variables import (
     ENDS,
+    FILLED_MAPPED,
     FILLED_SENSITIVITY,
     INTERVAL,
     MAPPED,
@@ -38,6 +39,7 @@ from pneutouch.workflows.sweep.variables import (
     empty_columns,
     fill_row,
     missing_reasons,
+    over_filling,
 )
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 
@@ -311,7 +313,7 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
     Over injected gas or apex heights it is that of the states which have these, without interval."""
     from pneutouch.report.swept import SweptFigure
 
-    names = (FILLED_SENSITIVITY,) * 3 if _over_filling(content) else (SENSITIVITY_KEY, *ENDS)
+    names = (FILLED_SENSITIVITY,) * 3 if over_filling(content) else (SENSITIVITY_KEY, *ENDS)
     if not np.isfinite(content[names[0]].values).any():
         return None
     content = content[list(dict.fromkeys(names))]
@@ -319,11 +321,6 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
         content = _gridded(content)
     axes = tuple(_axis(content, str(name)) for name in content[names[0]].dims)
     return SweptFigure("sensitivity  (kPa/N)", axes, *(content[name].values for name in names))
-
-
-def _over_filling(content: xarray.Dataset) -> bool:
-    """True if injected gas or the apex height is swept."""
-    return any(values.attrs.get("key") in FILLINGS for values in content.coords.values())
 
 
 def _gridded(kept: xarray.Dataset) -> xarray.Dataset:
@@ -377,15 +374,13 @@ def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
     # Names before numbers, and last what does not vary.
     others.sort(key=lambda name: (len(axes[name].values) == 1, axes[name].numeric))
     at = {name: len(axes[name].values) // 2 for name in others}
-    label = MAPPED["sensitivity"][0]
-    mapped = {"sensitivity": (label, FILLED_SENSITIVITY)} if _over_filling(content) else MAPPED
     maps = {}
     for place in spread_places(len(axes[others[0]].values)) if others else [0]:
         at |= dict.fromkeys(others[:1], place)
         words = ", ".join([str(content.attrs["base_design"]), *(axes[name].named(k) for name, k in at.items())])
         ending = "".join(f"-{_cell(axes[name].values[place])}" for name in others[:1])
         cut = content.isel(at).transpose(first, second, ...)
-        for name, (label, variable) in mapped.items():
+        for name, (label, variable) in (FILLED_MAPPED if over_filling(content) else MAPPED).items():
             panels = _map_panels(cut, variable)
             if name == "sensitivity" or any(np.isfinite(panel.value).any() for panel in panels):
                 caption = f"{label}: {words}; model {content.attrs['model']}"

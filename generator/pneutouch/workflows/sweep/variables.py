@@ -19,6 +19,7 @@ from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.wording import data_of, rounded
+from pneutouch.workflows.sweep.grid import FILLINGS
 
 Interval = tuple[float, float] | None
 
@@ -188,6 +189,15 @@ MAPPED = {
     "interval": ("interval of the sensitivity, k = 2  (± %)", INTERVAL),
 }
 """Label and variable of every figure that is mapped, by the name of the map's file."""
+
+FILLED_MAPPED = {"sensitivity": (MAPPED["sensitivity"][0], FILLED_SENSITIVITY)}
+"""`MAPPED` of a sweep over fillings."""
+
+
+def over_filling(content: Any) -> bool:
+    """True if injected gas or the apex height is swept in a dataset."""
+    return any(values.attrs.get("key") in FILLINGS for values in content.coords.values())
+
 
 _REASONS = (
     ("beyond the limit point", "beyond the limit point"),
