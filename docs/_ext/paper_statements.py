@@ -130,8 +130,9 @@ def _minimum(found: Found) -> Answer:
     near = printed[least].driving_pressure > 0.85 * limit
     falls = _rises(-sensitivity(s) for s in ours)
     text = (
-        f"with equation 17 as printed alone: least {values[least]:.1f} kPa/N at {printed[least].driving_pressure / KPA:.1f} kPa, "
-        f"{values[-1]:.1f} beyond; where work and stored energy agree, and in the solid, it {'falls on' if falls else 'turns'}"
+        f"with equation 17 as printed alone: least {values[least]:.1f} kPa/N at "
+        f"{printed[least].driving_pressure / KPA:.1f} kPa, {values[-1]:.1f} beyond; where work and stored energy "
+        f"agree, and in the solid, it {'falls on' if falls else 'turns'}"
     )
     return text, bool(near and 0 < least < len(values) - 1)
 

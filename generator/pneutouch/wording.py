@@ -70,7 +70,7 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 
 def unknown_at(reasons: Iterable[tuple[float, str | None]]) -> list[str]:
-    """Reasons why uncertainties are not known (None: one is), each with its driving pressures, kPa, where they differ."""
+    """Reasons why uncertainties are not known (None: known), each with its driving pressures (kPa) if they differ."""
     pressures: dict[str | None, list[str]] = {}
     for pressure_kPa, why in reasons:
         pressures.setdefault(why, []).append(f"{pressure_kPa:g}")

@@ -53,7 +53,8 @@ def test_the_design_written_without_a_base_passes_the_rules_on_its_port(fingerti
 
 
 @pytest.mark.parametrize(
-    ("setting", "port"), [({"assignments": ["connector.port=thread-M3"]}, "thread-M3"), ({"base": "paper-dome"}, "barb-4x2.5")]
+    ("setting", "port"),
+    [({"assignments": ["connector.port=thread-M3"]}, "thread-M3"), ({"base": "paper-dome"}, "barb-4x2.5")],
 )
 def test_a_port_that_is_given_is_kept(setting, port):
     given = target({"sensitivity_kPa_per_N": 1.9}, setting=setting)

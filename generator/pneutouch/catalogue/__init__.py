@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pneutouch.catalogue.library import KINDS, Library, user_folder
-    from pneutouch.catalogue.scene import (
-        DesignSource,
-        ResolvedDesign,
-        check_scene,
-        load_scene,
-        split_calibration,
-    )
+    from pneutouch.catalogue.scene import DesignSource, ResolvedDesign, check_scene, load_scene, split_calibration
 
 _HOMES = {
     "library": ("KINDS", "Library", "user_folder"),

@@ -221,10 +221,9 @@ def _interval(ends: IntervalRecord | None) -> str:
 
 def _uncertainty(states: Sequence[StateRecord]) -> list[str]:
     """Lines on where and why the uncertainty is not known, and on what to measure first for the highest pressure."""
-    last = states[-1].uncertainty
-    assert last is not None
-    summary = [] if last.summary is None else [f"at {states[-1].driving_pressure_kPa:g} kPa: {last.summary}"]
-    return [*unknown_at((s.driving_pressure_kPa, s.uncertainty and s.uncertainty.unknown) for s in states), *summary]
+    known = [(state.driving_pressure_kPa, state.uncertainty) for state in states if state.uncertainty is not None]
+    summary = [f"at {at:g} kPa: {last.summary}" for at, last in known[-1:] if last.summary is not None]
+    return [*unknown_at((pressure_kPa, one.unknown) for pressure_kPa, one in known), *summary]
 
 
 def _viscous(viscous: Viscous) -> list[str]:

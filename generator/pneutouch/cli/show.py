@@ -37,7 +37,9 @@ def show(
 
 
 NO_RECIPE = "no recipe: it cannot be built again"
-OF_A_JOB = "no recipe: a file of pneutouch to print from; to build again, take the design's 3MF, a folder above its jobs"
+OF_A_JOB = (
+    "no recipe: a file of pneutouch to print from; to build again, take the design's 3MF, a folder above its jobs"
+)
 
 
 def show_text(package: ShownPackage) -> str:

@@ -11,9 +11,8 @@ from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures, with_end
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts import Assembly
-from pneutouch.parts.air_path import AirPiece, air_path
+from pneutouch.parts.air_path import UNKNOWN_END, AirPiece, air_path
 from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
-from pneutouch.spec.gauge import UNKNOWN_END
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
 

@@ -56,8 +56,8 @@ def new_design(
     With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
     returned with the path (else None). Raises InputError if no profile does.
     """
-    values = f"The values are the defaults, except the port: {PRINTED_PORT}, which every printer makes"
-    note = f"Every key may be left out. {values}"
+    kept = f"The values are the defaults, except the port: {PRINTED_PORT}, which every printer makes"
+    note = f"Every key may be left out. {kept}"
     if process is None and material is None:
         text = design_template(name, {"connector": {"port": PRINTED_PORT}}, f"{note}.")
         return write_design(name, folder, text), None

@@ -13,6 +13,10 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, plug_neck, plug_radius
 from pneutouch.spec.part import CastRing, ClampedFlange, GluedFlange, OnePiece
 
+UNKNOWN_END = 150.0
+"""Greatest gas volume, mm3, taken for a gauge whose maker states none: dead-ended tubes of 1.37 mm bore and 0.2 to 2 m
+resonate 6 to 25 % below a line with a stated 4.7 mm3, mostly explained by 150 mm3 (curves read off a figure)."""
+
 
 def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 between the base plane and the mouth of the port, with the fitting or tube in place."""

@@ -7,10 +7,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
+from pneutouch.parts.air_path import UNKNOWN_END
 from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH
 from pneutouch.report.prose import WORDS
-from pneutouch.spec.gauge import UNKNOWN_END
 from pneutouch.units import KPA, ML
 from pneutouch.wording import tenths_below
 

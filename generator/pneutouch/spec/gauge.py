@@ -16,10 +16,6 @@ into a pressure with constants stored in each part."""
 
 Interface = Literal["analog", "I2C", "SPI"]
 
-UNKNOWN_END = 150.0
-"""Greatest gas volume, mm3, taken for a gauge whose maker states none: dead-ended tubes of 1.37 mm bore and 0.2 to 2 m
-resonate 6 to 25 % below a line with a stated 4.7 mm3, mostly explained by 150 mm3 (curves read off a figure)."""
-
 
 def _figure(unit: str, low: float, high: float, help: str) -> Any:
     """Declare a sourced number that may be unknown; value and both ends of its range obey the bounds."""

@@ -176,7 +176,9 @@ class Setting(SparseTable):
 
     left_out = ("gauge", "processes")
 
-    base: str | None = name(None, registry="designs", help="Name or path of a design; left out: defaults, port push-in-4.")
+    base: str | None = name(
+        None, registry="designs", help="Name or path of a design; left out: defaults, port push-in-4."
+    )
     assignments: list[str] = Field(
         default=[], max_length=100, description="What changes the base design, TABLE.KEY=VALUE each."
     )
