@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pneutouch.errors import InputError, shown
+from pneutouch.wording import data_of
 
 KEY = "format"
 """The key that states the format."""
@@ -22,26 +23,7 @@ class StoredFormat(NamedTuple):
     file: str
 
 
-FORMATS: Mapping[str, StoredFormat] = {
-    "calibration": StoredFormat(1, "`calibrations/NAME.toml` of `calibrate`"),
-    "calibration-report": StoredFormat(1, "`calibration.json` of `calibrate`"),
-    "campaign": StoredFormat(1, "`campaign.toml` of `plan` and `simulate`, key `campaign_format`"),
-    "comparison": StoredFormat(1, "`comparison.json` of `compare`"),
-    "dataset": StoredFormat(1, "the netCDF file of `sweep`"),
-    "exported-design": StoredFormat(1, "a design that the studio exported"),
-    "figures": StoredFormat(1, "`figures.json` of `characterize`"),
-    "fit": StoredFormat(1, "`fit.json` of `fit-material`"),
-    "manifest": StoredFormat(1, "`manifest.json` of every output folder"),
-    "plan": StoredFormat(1, "`plan.json` of `plan`"),
-    "prediction": StoredFormat(1, "`prediction.json` of `build`"),
-    "reader": StoredFormat(1, "`reader.json` of `export-reader`"),
-    "recipe": StoredFormat(1, "the recipe in a 3MF of `build`"),
-    "response": StoredFormat(1, "`response.json` of `respond`"),
-    "scan": StoredFormat(1, "`scan.json` of `scan`"),
-    "specimen-report": StoredFormat(1, "`specimen.json` of a texture specimen"),
-    "stack": StoredFormat(1, "`stack.json` of a voxel stack"),
-    "truth": StoredFormat(1, "`truth.json` of `simulate`"),
-}
+FORMATS: Mapping[str, StoredFormat] = {name: StoredFormat(**entry) for name, entry in data_of(__file__).items()}
 """Every format by name."""
 
 _STATED = re.compile(r"pneutouch/([a-z-]+)/([1-9][0-9]{0,5})")

@@ -14,7 +14,7 @@ from pneutouch.parts import Assembly
 from pneutouch.parts.air_path import UNKNOWN_END, AirPiece, air_path
 from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
 from pneutouch.units import KPA, ML
-from pneutouch.wording import rounded
+from pneutouch.wording import data_of, rounded
 
 GAP = "gap"
 """Name of the piece of an air path that is a volume next to the cavity, not a duct."""
@@ -157,12 +157,7 @@ def dynamics(figures: SensorBandwidth) -> Dynamics:
     return rounded(record, _DIGITS)
 
 
-BASIS = (
-    "small step of force at first contact; laminar flow, linear, rigid round tube, air at 20 C with walls of constant "
-    "temperature; without the mass of the wall and of the object",
-    "gain: reading over that of a slow change; resonance, bandwidth, rise and overshoot with the wall as stiff as it "
-    "is at once",
-)
+BASIS = tuple(data_of(__file__)["basis"])
 
 
 def _state_record(state: DynamicState, rate_Hz: float | None) -> DynamicRecord:

@@ -28,7 +28,7 @@ from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
-from pneutouch.wording import rounded
+from pneutouch.wording import data_of, rounded
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
@@ -41,28 +41,13 @@ GAP, STEEP_GAP = 0.2, 0.45
 for the paper's sensor: with one end 6 times as stiff as the other, either one, and with the rim 13 times as stiff as
 the pole (`tests/evaluation/test_graded_uncertainty.py`)."""
 
-_NOTE = (
-    "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean "
-    f"modulus, whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (one end "
-    f"6 times as stiff as the other; {STEEP_GAP:g} for 13 times); all of the wall is taken stiffer, or all of it "
-    "softer, than its mixing curve states"
-)
-
-_LAW_NOTE = (
-    "the wall has a fitted law: the figures are the solid's, their relative uncertainty is that of the neo-Hookean "
-    "wall with the modulus fitted over the same stretches (docs/reference/materials.md sets both side by side)"
-)
-
-_SOFT_NOTE = (
-    "the ambient pressure is {:.3g} times the modulus, more than the atlas answers for: the figures are the "
-    "solid's, their relative uncertainty is by the derivatives of the atlas's tables, whose states hold without gas"
-)
+_WORDS: dict[str, str] = data_of(__file__)
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
     """Notes on the uncertainty of a graded wall and of a fitted law; empty for other walls."""
-    graded = () if sensor.wall.grade is None else (_NOTE,)
-    return (*graded, _LAW_NOTE) if sensor.wall.fitted else graded
+    graded = () if sensor.wall.grade is None else (_WORDS["graded"].format(gap=GAP, steep=STEEP_GAP),)
+    return (*graded, _WORDS["law"]) if sensor.wall.fitted else graded
 
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
@@ -75,10 +60,7 @@ DIGITS = 6
 _NOTHING = 1e-9
 """Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
 
-_TREND = (
-    f"the membrane's sensitivity follows the trend only, up to {1 + NUMERICAL['membrane']:.0f} times off the solid's; "
-    "take model atlas, solid or auto"
-)
+_TREND = _WORDS["membrane"].format(off=1 + NUMERICAL["membrane"])
 
 
 @dataclass(frozen=True)
@@ -214,7 +196,7 @@ def _of_blown(
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
     if unknown(sensor, model) is not None:
-        notes_of_wall += (_SOFT_NOTE.format(sensor.gas.ambient_pressure / sensor.wall.shear_modulus),)
+        notes_of_wall += (_WORDS["soft"].format(sensor.gas.ambient_pressure / sensor.wall.shear_modulus),)
     from pneutouch.mechanics.atlas.figures import FIGURES
     from pneutouch.mechanics.uncertainty.document import document, gas_text, text
 

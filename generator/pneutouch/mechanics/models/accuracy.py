@@ -2,6 +2,7 @@
 
 from pneutouch.mechanics.sensor import IndentationProtocol, Sensor
 from pneutouch.results.prediction import ErrorEstimate
+from pneutouch.wording import data_of
 
 HARMONICS_SETTLED = 0.01
 """Greatest relative change of sensitivity, force and pressure by the last increase of the harmonics' order."""
@@ -36,17 +37,7 @@ BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
 NOT_CHECKED = "sway and lobes of the dome around its axis are not looked for"
 
 _SURFACES = "R0 is the inner radius; heights are those of the inner and the outer surface"
-_THROUGH_BASE = (
-    "the wall below the base plane, self-contact and contact with the connector are not modelled",
-    "the fold of the wall at its clamped corner, which refined meshes find in deep presses, is not resolved by default",
-)
-_BREAK = (
-    "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp"
-)
-_ON_BASE = (
-    "next to its clamp and inside, the wall lies down without friction on the body below it; contact of the rest of "
-    "the wall with itself is not modelled"
-)
+_WORDS = data_of(__file__)
 
 
 def discretised(
@@ -71,8 +62,8 @@ def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
     law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"
     lines = (law, body, _SURFACES)
     if sensor.dome.base is None:
-        return (*lines, *_THROUGH_BASE, _edge(sensor.protocol), _BREAK)
-    return (*lines, _edge(sensor.protocol), _BREAK, _ON_BASE)
+        return (*lines, *_WORDS["through_base"], _edge(sensor.protocol), _WORDS["break"])
+    return (*lines, _edge(sensor.protocol), _WORDS["break"], _WORDS["on_base"])
 
 
 def _edge(protocol: IndentationProtocol) -> str:

@@ -9,14 +9,13 @@ from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.spec.material import Casting
 from pneutouch.units import UM
+from pneutouch.wording import data_of
 
 _MEASURED = "measured on the meshes of the closed mould"
 
 _LEAST_DRAFT = 1.0
-_DRAFT = (
-    "half a degree a side is the extreme minimum and one degree standard practice in moulding "
-    "(minghaomould.com, design reference, read 2026); layers of a print add texture"
-)
+_SOURCES: dict[str, str] = data_of(__file__)
+_RELEASE = _SOURCES["release"].format(safety=SAFETY)
 
 _MOST_ERROR = 0.1
 """Greatest error of the wall, as a share of it, by the clearance of the cones: own choice."""
@@ -73,7 +72,7 @@ def _draft(mould: MouldAssembly) -> list[Finding]:
         return []
     text = f"its draft is {draft:g} degrees; at least {_LEAST_DRAFT:g} is recommended"
     excess = Excess(draft, _LEAST_DRAFT, "degrees")
-    return [Finding("mould fit", "warning", "mould", text, "raise mould.draft_deg", _DRAFT, None, excess)]
+    return [Finding("mould fit", "warning", "mould", text, "raise mould.draft_deg", _SOURCES["draft"], None, excess)]
 
 
 def _wall_error(mould: MouldAssembly) -> list[Finding]:
@@ -139,12 +138,6 @@ def check_mould_filling(mould: MouldAssembly) -> list[Finding]:
     return findings
 
 
-_RELEASE_SOURCE = (
-    "greatest diameter of the core over the smallest opening of the membrane, and the wall rolled back over itself; "
-    f"a factor of {SAFETY:g} to the elongation at break: own choice"
-)
-
-
 def check_mould_release(mould: MouldAssembly) -> list[Finding]:
     """Finding if the strain needed to leave the core, times `SAFETY`, exceeds the elongation at break."""
     release = release_of(mould.membrane, mould.size)
@@ -153,7 +146,7 @@ def check_mould_release(mould: MouldAssembly) -> list[Finding]:
     if broken is None:
         text = f"it must stretch by {100 * release.strain:.0f} % to leave its core; how far it may is not known"
         fix = "give elongation_at_break_percent in the material's file"
-        return [Finding("release", "note", "membrane", text, fix, _RELEASE_SOURCE, None, None)]
+        return [Finding("release", "note", "membrane", text, fix, _RELEASE, None, None)]
     if needed <= broken.least:
         return []
     text = (
@@ -162,9 +155,7 @@ def check_mould_release(mould: MouldAssembly) -> list[Finding]:
     )
     passing = release.passing_strain >= release.strain
     fix = "lower mould.draft_deg or mould.shrinkage_percent" if passing else "take a membrane.material that stretches"
-    return [
-        Finding("release", "error", "membrane", text, fix, _RELEASE_SOURCE, None, Excess(needed, broken.least, "%"))
-    ]
+    return [Finding("release", "error", "membrane", text, fix, _RELEASE, None, Excess(needed, broken.least, "%"))]
 
 
 PREPARED_MIN = 8.0
@@ -178,10 +169,6 @@ _LARGE_BUBBLE = 0.5
 """Ratio of a bubble's diameter to the wall above which it is a weak spot that may leak (own, unverified)."""
 _GRAVITY = 9.81
 _PHOTOPOLYMER = "uncured photopolymer"
-_INHIBITION = (
-    "vendor, smooth-on.com/support/faq/129 on cure inhibition; joshuawoehlke.com: 24 finishes of resin prints "
-    "compared, few of which let a platinum silicone cure"
-)
 
 
 def check_filling(view: PrintView) -> list[Finding]:
@@ -234,7 +221,7 @@ def check_inhibition(view: PrintView) -> list[Finding]:
             f"{part.item.body.material.label} cures against the {surface.body}, printed in {surface.material}: "
             "photopolymer inhibits its cure, and the face stays sticky",
             "post-cure, wash and seal the print, and test a drop first; or print it in filament",
-            _INHIBITION,
+            _SOURCES["inhibition"],
             None,
             None,
         )

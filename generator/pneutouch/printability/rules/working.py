@@ -12,8 +12,9 @@ from pneutouch.parts.glue import GLUES, glues_for
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import KPA, UM
+from pneutouch.wording import data_of
 
-_SOURCE = "layer height and pixel as the printer's profile states them; a tenth of a step: own, unverified"
+_SOURCES: dict[str, str] = data_of(__file__)
 _OFF = 0.1
 """Share of a step by which a wall may differ from a whole number of steps."""
 
@@ -73,7 +74,7 @@ def check_layers(view: PrintView) -> list[Finding]:
     )
     excess = Excess(missed[0].off(wall), _OFF, missed[0].unit)
     text = f"the wall is {', and '.join(clauses)}{read}"
-    return [Finding("layers", "note", part.name, text, fix, _SOURCE, at, excess)]
+    return [Finding("layers", "note", part.name, text, fix, _SOURCES["steps"], at, excess)]
 
 
 def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
@@ -104,14 +105,6 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
     return f"; it reads {least:.3f} to {most:.3f} kPa/N at {pressure / KPA:g} kPa"
 
 
-_SOURCES = {
-    "limit point": "paper, section 4-A: the valid range ends at the maximum driving pressure",
-    "break strain": "lower end of the material's elongation at break",
-    "law range": "the stretch up to which the material's law was fitted (its file), against that of the inflated wall",
-    "gauge range": "paper, Supplement C: SMC PSE543-R06, +-100 kPa",
-}
-
-
 def check_driving(view: PrintView) -> list[Finding]:
     """Findings on a highest driving pressure above the rated pressure or the nominal limit, and on presses that pass
     the range of a gauge that the design names."""
@@ -127,7 +120,7 @@ def _unlined(context: SensorContext) -> list[Finding]:
             context.membrane,
             f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}",
             "take a driving pressure nearer to 0 kPa or a thicker wall",
-            "this project's: a sensitivity is the slope of a straight line",
+            _SOURCES["no line"],
             (0.0, 0.0, state.apex_outer),
             None,
         )
@@ -218,9 +211,6 @@ def check_glue(view: PrintView) -> list[Finding]:
     return [Finding("glue", "warning", context.membrane, text, fix, glue.source, None, None)]
 
 
-_MEETING = (
-    "this project's prediction: the model's wall passes through this body: its figures do not hold where they touch"
-)
 _TOUCH = 0.05
 """Depth in mm up to which an overlap is within the errors of mesh and prediction."""
 
@@ -249,7 +239,7 @@ def check_freedom(view: PrintView) -> list[Finding]:
                     view.sensor.membrane,
                     text,
                     fix,
-                    _MEETING,
+                    _SOURCES["meeting"],
                     worst[2],
                     Excess(worst[0], 0.0, "mm"),
                 )
