@@ -147,10 +147,10 @@ class SensorState:
     def judged(self) -> SensorState:
         """The state, without figures and with an event that gives the reason if its curve falls or is no line."""
         f = self.figures
-        if f is not None and f.sensitivity > 0.0 and f.r_squared >= STRAIGHT:
+        if f is None or (f.sensitivity > 0.0 and f.r_squared >= STRAIGHT):
             return self
-        why = "the force does not rise" if f is None else "the pressure does not rise with the force"
-        if f is not None and f.sensitivity > 0.0:
+        why = "the pressure does not rise with the force"
+        if f.sensitivity > 0.0:
             why = f"a straight line explains {f.r_squared:.0%} of the pressure's changes"
         event = Event(NO_LINE, self.range_end, False, f"{why}, so no sensitivity, stiffness or force range is given")
         return replace(self, figures=None, events=(*self.events, event))
