@@ -54,9 +54,7 @@ def test_a_filling_above_the_rated_pressure_is_warned_of_and_marked():
 def test_a_press_that_is_lost_at_first_contact_has_a_record():
     lost = predicted(evaluate("graded-dome", {PRESSURES: [-21]})).states[0]
     assert lost.curve.indentation_mm == (0.0,) and lost.curve.tangent_stiffness_N_per_mm == ()
-    assert lost.sensitivity_kPa_per_N is None and [
-        event.indentation_mm for event in lost.events if event.ends_range
-    ] == [0.0]
+    assert lost.sensitivity_kPa_per_N is None and any(event.ends_range for event in lost.events)
 
 
 def test_the_chart_of_inflation_holds_a_vacuum_and_its_sheet_the_table_off_the_centre(emptied):
