@@ -118,6 +118,6 @@ def tested_kPa(scene: ResolvedDesign) -> list[float]:
             file=scene.where,
             key="pneumatics.driving_pressures_kPa[0]",
             value=pressures_kPa[0],
-            remedy=f"give those alone: --set '{from_ambient(pressures_kPa)}'",
+            remedy=f"give those alone: `set` '{from_ambient(pressures_kPa)}'",
         )
     return pressures_kPa
