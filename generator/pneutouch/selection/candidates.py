@@ -257,8 +257,8 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
 
 
 def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """Candidates, and with each the nine sizes around it in hundredths of a millimetre."""
-    by = 0.01 * np.arange(-1.0, 2.0)
+    """Candidates, and with each the 25 sizes around it in hundredths of a millimetre."""
+    by = 0.01 * np.arange(-2.0, 3.0)
     radius, wall = (
         np.clip(np.round(pool.radius, 2)[:, None, None] + by, _RADIUS.low, _RADIUS.high),
         np.round(pool.wall, 2)[:, None, None] + by[:, None],

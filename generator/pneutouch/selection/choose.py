@@ -305,7 +305,8 @@ def _least(margin_of: dict[str, Array]) -> Array:
 def _impossible(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
 ) -> SelectionResult:
-    """Result with the candidate that breaks the least at round sizes, and the requirements to drop for a design."""
+    """Result with the candidate that breaks the least at round sizes, and the requirements to drop for a design; with
+    it as the design if it breaks none."""
     margin_of = margins(problem, pool)
 
     def close(row: int) -> Candidate:
@@ -313,7 +314,10 @@ def _impossible(
 
     rows = np.argsort(-_least(margin_of), kind="stable")[:_NEAREST]
     at_round_sizes = _least(margins(problem, rounded(problem, pool.take(rows))))
-    nearest, known = int(rows[at_round_sizes.argmax()]), bool(at_round_sizes.max() > _UNKNOWN)
+    nearest = close(int(rows[at_round_sizes.argmax()])) if at_round_sizes.max() > _UNKNOWN else None
+    if nearest is not None and min(nearest.margins.values()) >= 0.0:
+        # Rounding moved those of the shortlist out, and not this one.
+        return SelectionResult([nearest], None, [], pool.resin.size)
     dropped = []
     for requirement in REQUIREMENTS:
         if requirement not in margin_of:
@@ -322,7 +326,7 @@ def _impossible(
         if rest.any():
             row = int(np.flatnonzero(rest)[np.argmax(margin_of[requirement][rest])])
             dropped.append(DroppedRequirement(requirement, close(row)))
-    return SelectionResult([], close(nearest) if known else None, dropped, pool.resin.size)
+    return SelectionResult([], nearest, dropped, pool.resin.size)
 
 
 _MOST = ("outer diameter", "footprint", "break strain", "gauge range")
