@@ -36,7 +36,8 @@ def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
     ("pressures", "rated", "tested"), [([0, 22], 19.7, 19.7), ([0, 12], 19.7, 12), ([-12, -3], 19.7, 12), ([0], 9, 1)]
 )
 def test_leaks_are_looked_for_at_the_lesser_of_stated_and_rated_pressure(pressures, rated, tested):
-    lines = making(load_scene("paper-dome", {"pneumatics.driving_pressures_kPa": pressures}), rated_kPa=rated)
+    assembly = assemble(load_scene("paper-dome", {"pneumatics.driving_pressures_kPa": pressures}))
+    lines = making(assembly, rated_kPa=rated)
     assert re.findall(r"[\d.]+(?= kPa)", lines[-1]) == [f"{tested:g}"]
 
 

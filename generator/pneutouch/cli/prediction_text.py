@@ -184,14 +184,14 @@ def _range_end(state: StateRecord) -> str:
 
 
 def _warned(prediction: PredictionRecord) -> list[str]:
-    """Events to warn of, one line each."""
-    return [
-        f"warning: {event.kind} at {event.indentation_mm:.2f} mm and {state.driving_pressure_kPa:.4g} kPa: "
-        f"{event.message}"
-        for state in (*prediction.states, *prediction.filled)
-        for event in state.events
-        if event.kind in WARNED
-    ]
+    """Events to warn of, one line a kind with the travels at which it begins."""
+    places: dict[tuple[str, str], list[str]] = {}
+    for state in (*prediction.states, *prediction.filled):
+        for event in state.events:
+            if event.kind in WARNED:
+                place = f"{event.indentation_mm:.2f} mm at {state.driving_pressure_kPa:.4g} kPa"
+                places.setdefault((event.kind, event.message), []).append(place)
+    return [f"warning: {kind} from {', '.join(found)}: {words}" for (kind, words), found in places.items()]
 
 
 def _sheared(states: Sequence[StateRecord]) -> list[str]:

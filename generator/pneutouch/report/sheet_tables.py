@@ -82,10 +82,14 @@ def warnings(sheet: SheetData) -> list[str]:
     states = sheet.prediction.all_states
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
-    left = [(state.driving_pressure / KPA, event) for state in states for event in state.warned]
+    left: dict[tuple[str, str], list[str]] = {}
+    for state in states:
+        for event in state.warned:
+            place = f"{event.indentation:.2f} mm at {state.driving_pressure / KPA:.4g} kPa"
+            left.setdefault((event.kind, event.message), []).append(place)
     if any(not _is_above(sheet, state) for state in sheet.prediction.states):
         above = [f"{text[:-1]}; its figures stand in the annex alone, marked *." for text in above]
-    return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:.4g} kPa: {e.message}." for p, e in left]
+    return above + [f"Warning: {kind} from {', '.join(found)}: {words}." for (kind, words), found in left.items()]
 
 
 def _condition(sheet: SheetData, k: int, key: str = SENSITIVITY_KEY) -> str:
