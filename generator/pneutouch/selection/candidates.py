@@ -263,10 +263,12 @@ def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePoo
         np.clip(np.round(pool.radius, 2)[:, None, None] + by, _RADIUS.low, _RADIUS.high),
         np.round(pool.wall, 2)[:, None, None] + by[:, None],
     )
-    if problem.inner_radius is not None:
-        radius = np.full((1, 1, 1), problem.inner_radius)
     if problem.wall_thickness is not None:
         wall = np.full((1, 1, 1), problem.wall_thickness)
+    if problem.inner_radius is not None:
+        radius = np.full((1, 1, 1), problem.inner_radius)
+    elif problem.max_diameter is not None:
+        radius = np.minimum(radius, 0.01 * np.floor(50.0 * problem.max_diameter - 100.0 * wall + 1e-6))
     parts = np.broadcast_arrays(pool.resin[:, None, None], radius, wall, pool.pressure[:, None, None])
     return joined([pool, evaluated(problem, *(part.ravel() for part in parts))])
 

@@ -19,6 +19,7 @@ from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.output.new import PRINTED_PORT
+from pneutouch.parts import assemble
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin
 from pneutouch.spec.design import CALIBRATION, DesignFile
@@ -133,7 +134,14 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     Raises InputError if it names something unknown; ``where`` is the target's file, for messages.
     """
     with named_by_target(target, where):
-        return _base_scene(target, where, library)
+        scene = _base_scene(target, where, library, _source(target, library))
+        if target.setting.base is None:
+            try:
+                assemble(scene)
+            except InputError:
+                # A small dome has no space for the wider channel of that port.
+                scene = _base_scene(target, where, library, DesignSource("default", {}, "the default design"))
+        return scene
 
 
 @contextmanager
@@ -150,11 +158,10 @@ def named_by_target(target: Target, where: str) -> Iterator[None]:
         raise
 
 
-def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
+def _base_scene(target: Target, where: str, library: Library, source: DesignSource) -> ResolvedDesign:
     given, chosen = target.given, setting_changes(target, library)
     sizes = {"membrane.inner_radius_mm": given.inner_radius_mm, "membrane.wall_thickness_mm": given.wall_thickness_mm}
     changes = {**chosen} | {key: size for key, size in sizes.items() if size is not None}
-    source = _source(target, library)
     membrane = source.changed(chosen).membrane
     if given.wall_thickness_mm is not None and given.inner_radius_mm is None:
         if given.wall_thickness_mm >= membrane.inner_radius_mm:
