@@ -94,7 +94,7 @@ def test_what_was_not_tested_says_so(html, pdf_text):
 @pytest.mark.slow
 def test_a_pressure_above_the_rating_is_warned_of_first_and_the_rating_shows_its_limit(built, html, pdf_text):
     first, every = " ".join(pdf_text[0].split()), " ".join(" ".join(pdf_text).split())
-    warning = "Warning: 22 kPa is above the rated pressure of 19.7 kPa."
+    warning = "Warning: 22 kPa is above the rated pressure of 19.7 kPa"
     assert html.count(warning) == 1 and html.index(warning) < html.index("Performance") and warning in first
     for words in ("39.6 nominal", "21.9 to 71.5 kPa at k = 2", "measure the modulus on coupons"):
         assert words in html and words in every
@@ -190,7 +190,7 @@ def test_sheet_and_text_warn_of_the_sway(evaluated, page):
     record = predicted_in_full(evaluation)
     prediction = data(record)
     (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]
-    warning = f"sway at {event['indentation_mm']:.2f} mm and 0 kPa: {event['message']}"
+    warning = f"sway from {event['indentation_mm']:.2f} mm at 0 kPa: {event['message']}"
     assert f"Warning: {warning}." in page(evaluation)
     assert f"\nwarning: {warning}\n" in prediction_text(record)
 
@@ -284,7 +284,7 @@ def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(buil
         "Objet260",
         "Digital Material",
         "dome up",
-        "choose the resin of each body by hand",
+        "choose the material of each body by hand",
         "greatest measured distance",
     ):
         assert word in text

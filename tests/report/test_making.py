@@ -168,3 +168,12 @@ def test_every_drill_and_tap_of_the_steps_is_among_the_tools(port, mount):
     seat = assembly.scene.seat
     grip = seat.ring_thickness + (1 - seat.squeeze) * assembly.layout.flange_thickness
     assert 2.0 <= hardware.screw_mm - grip <= seat.core_depth
+
+
+def test_the_leak_that_is_allowed_is_a_hundredth_of_the_range(evaluated):
+    evaluation = evaluated("paper-dome", model="membrane")
+    state = evaluation.prediction.states[-1]
+    line = making(evaluation.assembly, state=state)[-1]
+    fall_kPa, force_N = (float(text) for text in re.findall(r"([\d.]+) (?:kPa a minute|N\b)", line))
+    assert force_N == pytest.approx(0.01 * state.figures.force_high, rel=0.05)
+    assert fall_kPa == pytest.approx(force_N * state.figures.sensitivity, rel=0.06)

@@ -330,6 +330,10 @@ class Solid:
         return (rings.vertices, np.concatenate(rings.strips)), self.bores
 
 
+_DIGITS = 6
+"""Decimals, mm, to which the corners that a boolean leaves are told apart."""
+
+
 def _combined(
     base: tuple[Array, Indices], adds: list[tuple[Array, Indices]], cuts: list[tuple[Array, Indices]]
 ) -> tuple[Array, Indices]:
@@ -341,4 +345,10 @@ def _combined(
         whole = Manifold.batch_boolean([whole, *starmap(manifold_of, adds)], OpType.Add)
     if cuts:
         whole = Manifold.batch_boolean([whole, *starmap(manifold_of, cuts)], OpType.Subtract)
-    return mesh_of(whole)
+    vertices, triangles = mesh_of(whole)
+    # A tool that nearly meets an edge leaves triangles too narrow for a file in float32: their ends become one.
+    _, kept, index = np.unique(np.round(vertices, _DIGITS), axis=0, return_index=True, return_inverse=True)
+    if kept.size == len(vertices):
+        return vertices, triangles
+    joined = index.reshape(-1)[triangles]
+    return vertices[kept], joined[(joined != np.roll(joined, 1, axis=1)).all(axis=1)]

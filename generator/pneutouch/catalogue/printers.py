@@ -43,6 +43,10 @@ def cannot_run(
         known = {} if library is None else library.paths("materials")
         return uncast(printer, material, str(known.get(name or "", place.get("file") or name)))
     at_once = f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once"
+    if material.is_uncoded and printer.voxel_print is None:
+        at_once = "no machine has a code for this mix, and it has no voxel print"
+    elif material.is_digital and not any(mode.digital_materials for mode in printer.mode):
+        at_once = "it mixes no digital materials"
     remedy = at_once if library is None else f"{at_once}; {made_by(material, library, setting)}"
     return InputError(f"the {printer.title} cannot run {material.label}", remedy=remedy, **place)
 

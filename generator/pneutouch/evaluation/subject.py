@@ -144,7 +144,9 @@ def _ending(key: str, left: list[Finding], thin: list[Finding], scene: ResolvedD
             check_scene(other)
             items = tuple(item for item in subject_of(assemble(other)).items if item.body.name == left[0].body)
             view = PrintView(PrintSubject(items))
-            found = {rule: CHECKS[rule](view) for rule in {one.rule for one in open_ones}}
+            found = {rule: check(view) for rule, check in CHECKS.items()}
+            if any(new.severity == "error" for each in found.values() for new in each):
+                continue
             for one in open_ones:
                 rest = [
                     each.excess.measured for each in thin if each is not one and each.rule == one.rule and each.excess

@@ -13,12 +13,13 @@ from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintJob, PrintPart, PrintView
 from pneutouch.results.printing import ItemEstimate, JobEstimate
 from pneutouch.units import ML, UM, grams
+from pneutouch.wording import counted
 
 _SPARSE, _LOOP, _DENSE = 0.149, 0.25, 0.4
 """Filament support: share of space that lines of 0.35 mm, 2 mm apart, fill (PrusaSlicer's preset *common*); width in mm
 of a loop around it and thickness in mm of the dense layers under a ceiling, as PrusaSlicer 2.5.0 lays them."""
 
-_SUPPORT = f"{_SPARSE:.0%} filled, a loop around it, dense under ceilings, as PrusaSlicer's default settings do"
+_SUPPORT = f"{_SPARSE:.0%} filled, a loop around it, dense under ceilings, as by the settings beside the job"
 
 _OUTLINES = 1.35
 """Thickness in mm of three outlines, 0.45 mm each, behind which a part may have infill."""
@@ -94,7 +95,8 @@ def _item(part: PrintPart) -> ItemEstimate:
     volume, corners = body.volume if solid is None else float(solid.volume), body.vertices[body.triangles]
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     shell = min(volume, 0.5 * _OUTLINES * float(np.linalg.norm(sides, axis=1).sum()))
-    laid = shell + part.item.infill * (volume - shell)
+    flow = 1.0 if body.material.making is None else float(body.material.making.slicer.get("extrusion_multiplier", 1.0))
+    laid = flow * (shell + part.item.infill * (volume - shell))
     material = body.material
     mix = material.mix
     # Without a measured mix only the sum of a digital material's resins is known.
@@ -110,6 +112,8 @@ def _support(job: PrintJob) -> tuple[float, str]:
     if job.printer.process == "polyjet":
         volume = float(supported(voxels).sum()) * voxels.cube
         return volume, f"support: everything below the part and inside it, solid, in {cubes}; no carpet below the part"
+    if job.printer.process == "resin":
+        return 0.0, "support: not known, the printer's program lays it"
     full, bare = voxels.label > 0, overhangs(voxels)
     # A flat slope is a flight of steps here, of which the edges alone hang free.
     hanging = full.copy()
@@ -134,7 +138,8 @@ def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> 
     if item.printer.process == "polyjet":
         if layer is None or swaths is None:
             return None, ["time: the printer's profile gives no layer_seconds or no swath_mm"]
-        text = f"time: {layers} layers x {swaths} swaths x {layer.nominal:g} s ({layer.source}); warming up left out"
+        passes = f"{layers} layers x {counted(swaths, 'swath')}"
+        text = f"time: {passes} x {layer.nominal:g} s ({layer.source}); warming up left out"
         return layers * swaths * layer.nominal, [text, "swaths: the shorter side across the travel of the heads"]
     if item.printer.process == "resin" and layer is not None:
         return layers * layer.nominal, [f"time: {layers} layers x {layer.nominal:g} s ({layer.source})"]

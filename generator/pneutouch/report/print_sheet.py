@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import Assembly
 from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.parts.mould.assembly import SiliconeBatch
@@ -14,15 +15,29 @@ from pneutouch.results.printing import JobEstimate
 from pneutouch.units import ML
 from pneutouch.wording import counted
 
+LEAK = 0.01
+"""Share of the range's pressure rise that may leak in a minute: own choice; a press of ten seconds loses 0.2 %."""
 
-def making(assembly: Assembly, pour: SiliconeBatch | None = None, rated_kPa: float = math.inf) -> list[str]:
+
+def steps(sheet: SheetData) -> list[str]:
+    """Steps to make, clean and assemble the sensor of a sheet, in order."""
+    straight = [state for state in sheet.prediction.states if state.figures is not None]
+    return making(sheet.assembly, sheet.pour, sheet.rating.pressure_kPa, straight[-1] if straight else None)
+
+
+def making(
+    assembly: Assembly, pour: SiliconeBatch | None = None, rated_kPa: float = math.inf, state: SensorState | None = None
+) -> list[str]:
     """Steps to make, clean and assemble a sensor, in order; ``pour``: silicone of a cast membrane, else None.
 
-    It is tested for leaks at its greatest driving pressure, a vacuum as its pressure, but at most at the rated one."""
+    It is tested for leaks at its greatest driving pressure, a vacuum as its pressure, but at most at the rated one;
+    with a ``state`` that has figures, by `LEAK` of the pressure rise of its range."""
     scene, stands = assembly.scene, assembly.stands_up
     stated_kPa = max(map(abs, scene.design.pneumatics.driving_pressures_kPa))
     known = {"scene": scene, "stands": stands, "pour": pour, "glue": glue_of(scene), "glues": GLUES}
-    text = filled("making.j2", **known, fill_kPa=min(stated_kPa or 1.0, rated_kPa))
+    figures = None if state is None else state.figures
+    fall = figures and (LEAK * figures.sensitivity * figures.force_high, LEAK * figures.force_high)
+    text = filled("making.j2", **known, fill_kPa=min(stated_kPa or 1.0, rated_kPa), fall=fall)
     return [line for line in text.splitlines() if line]
 
 
@@ -65,6 +80,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
     file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = assembly.glue_volume / ML
+    mixed = f"-{assembly.job('membrane').replace(' ', '-')}."
     masses = {item.name: item.mass_g for job in sheet.estimates for item in job.items}
     return filled(
         "print-sheet.md.j2",
@@ -75,17 +91,19 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
             (body, solid.material.label, *assembly.machine(body.name), solid.mass)
             for body, solid in zip(assembly.bodies, assembly.solids, strict=True)
         ],
-        job_files=job_files,
+        job_files=[f"`{file}`" for file in job_files if not (scene.membrane_material.is_uncoded and mixed in file)],
         left_out=left_out,
         deviation=max(assembly.deviation(body) for body in assembly.bodies),
         calibration=scene.calibration,
         parts=[] if mould is None else [(body, mould.counts[body.name], masses[body.name]) for body in mould.printed],
         facts=[] if mould is None else mould_rows(mould),
-        steps=making(assembly, sheet.pour, sheet.rating.pressure_kPa),
+        steps=steps(sheet),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
-        glue=GLUES[glue].title if (glue := glue_of(scene)) else "a flexible adhesive that wets both materials",
+        glue=GLUES[glue].title
+        if (glue := glue_of(scene))
+        else "a flexible adhesive that wets both materials, such as polyurethane",
     )
 
 

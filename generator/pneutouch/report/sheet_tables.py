@@ -246,13 +246,13 @@ def sources(sheet: SheetData) -> list[list[str]]:
     ]
     rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
     shifts = [series.shift for series in m.relaxation if series.shift]
-    known = {"Relaxation": m.relaxation, "Change with temperature": shifts, "Mullins softening": []}
-    rows += [[what, "not known", ""] for what, data in known.items() if not data]
+    known = {"relaxation": m.relaxation, "change with temperature": shifts, "Mullins softening": []}
+    rows.append(["Not known", DASH, ", ".join(what for what, data in known.items() if not data)])
     accuracy = sheet.scene.printer.accuracy_mm
     return [
         ["The paper", "", prose.WORDS["datasheet"]["paper"]],
         *rows,
-        [f"Accuracy of the {sheet.scene.printer.title}, mm", f"±{accuracy.nominal:g}", accuracy.source],
+        ["Accuracy of the printer, mm", f"±{accuracy.nominal:g}", accuracy.source],
     ]
 
 

@@ -24,8 +24,8 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
     across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
     target = tradeoff.window_kPa_per_N or tradeoff.force
     if short and not target and np.median(np.concatenate(short)) < _ALIKE:
-        across += "\nnumbers: greatest force range, at the ends of each bar;"
-        across += f"\nin between {tradeoff.gauge_kPa:g} kPa of the gauge / sensitivity"
+        across += "\nnumbers: greatest force range at the ends,"
+        across += f"\nin between {tradeoff.gauge_kPa:g} kPa / sensitivity"
         return replace(_reached(tradeoff, short), x=across)
     chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
     xlim, ylim = _limits(tradeoff)
@@ -71,9 +71,7 @@ def _reached(tradeoff: TradeOff, short: list[Array]) -> Panel:
     for k, spot in enumerate(spot for spot in tradeoff.spots if spot.resin in titles):
         at = spot.figures.sensitivity, float(titles.index(spot.resin))
         lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
-        front = tradeoff.known[order[int(at[1])]]
-        best = f"; the best here {np.interp(at[0], front.sensitivity, front.force):.3g} N"
-        notes.append(Note(spot.label + best, at, (0.0, 1.0), bold=k == 0))
+        notes.append(Note(spot.label, at, (0.0, 1.0), bold=k == 0))
     if max(missing.max() for missing in short) >= _ALIKE:
         lines.append(PlotLine(label="thin: less, another limit ends the range", width=0.7))
     reached = np.concatenate([front.sensitivity for front in tradeoff.known])
