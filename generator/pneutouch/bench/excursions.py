@@ -1,7 +1,5 @@
 """Excursions of the plate into the sensor, found from its position alone, and the kind of run they make up."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

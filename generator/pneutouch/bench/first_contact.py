@@ -1,7 +1,5 @@
 """First contact of each loading: detected against the force's noise, then extrapolated to zero force."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -188,7 +186,7 @@ def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign:
     return bool(blocks.position[at].mean() > onset and force.mean() > least * np.sqrt(2 / count))
 
 
-def _error(loading: _Loading, onset: float, bend: float, length: float, *, bends: bool = False) -> float:
+def _error(loading: "_Loading", onset: float, bend: float, length: float, *, bends: bool = False) -> float:
     """Standard error of a fitted onset, mm, with the factor c free; with ``bends`` the shape is free too."""
     over = np.maximum(loading.position - onset, 0.0) / length
     shape = (1 - bend) * over + bend * over**2

@@ -1,7 +1,5 @@
 """Plate movements of a characterization (paper, section 3, Supplements C and D), and readings of each indentation."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -72,7 +70,7 @@ class RunProtocol:
         moves = 2 * (sum(self.depths) + len(self.depths) * CLEARANCE) / self.speed
         return moves + len(self.depths) * (self.hold + self.rest)
 
-    def quicker(self, rest: float, hold: float | None = None) -> RunProtocol:
+    def quicker(self, rest: float, hold: float | None = None) -> "RunProtocol":
         """The protocol with another rest (s) and, if given, another hold (s)."""
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 

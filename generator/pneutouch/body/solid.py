@@ -5,8 +5,6 @@ body are meshed directly, without slivers: each face is triangulated around the 
 strip between two circles. Other bores and all shapes added or cut are joined as meshes by manifold3d.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -90,7 +88,7 @@ class Body:
         """True if every edge is shared by exactly two triangles, in opposite directions."""
         return is_closed(self.triangles, len(self.vertices))
 
-    def welded(self) -> Body:
+    def welded(self) -> "Body":
         """The body as read back from a file: rounded to float32, vertices of equal position merged."""
         vertices, indices = welded(self.vertices, self.triangles)
         return replace(self, vertices=vertices, triangles=indices)
@@ -99,11 +97,11 @@ class Body:
         """The body as a manifold3d object; empty if it is not closed."""
         return manifold_of(self.vertices, self.triangles)
 
-    def moved(self, offset: Array) -> Body:
+    def moved(self, offset: Array) -> "Body":
         """The body shifted by ``offset`` (3,), mm."""
         return replace(self, vertices=self.vertices + offset)
 
-    def turned_over(self) -> Body:
+    def turned_over(self) -> "Body":
         """The body rotated by 180 degrees about the x axis."""
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 

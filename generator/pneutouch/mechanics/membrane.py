@@ -22,8 +22,6 @@ The free part of the pressed dome is an arc tangent to the plate at radius rho a
 The gas is isothermal and ideal, with the dead volume on both sides of eq. 15: pressures in MPa gauge, volumes in mm3.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -222,7 +220,7 @@ class PressedStates:
     force: Array
     thickness_stretch: Array
 
-    def row(self, k: int) -> PressedStates:
+    def row(self, k: int) -> "PressedStates":
         """The states at the k-th driving pressure, the first index of the arrays."""
         return PressedStates(
             self.contact_radius[k], self.volume[k], self.pressure[k], self.force[k], self.thickness_stretch[k]

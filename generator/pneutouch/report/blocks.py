@@ -1,7 +1,5 @@
 """The blocks of which a sheet consists; one template writes them as an HTML page, another sets them as a PDF."""
 
-from __future__ import annotations
-
 import datetime
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -167,7 +165,7 @@ class Tiles:
 class Columns:
     """Columns of blocks side by side, kept together on one page, with relative ``widths``."""
 
-    columns: Sequence[Sequence[SheetBlock]]
+    columns: "Sequence[Sequence[SheetBlock]]"
     widths: Sequence[int] = (1, 1)
 
 
@@ -176,7 +174,7 @@ class FramedBlocks:
     """Blocks in a frame, for statements to be seen first; an empty ``title`` is left out."""
 
     title: str
-    blocks: Sequence[SheetBlock]
+    blocks: "Sequence[SheetBlock]"
 
 
 SheetBlock = Heading | Text | Items | SheetTable | Plot | Plots | View | Tiles | Columns | FramedBlocks

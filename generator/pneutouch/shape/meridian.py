@@ -1,7 +1,5 @@
 """Meridians: closed loops of lines and arcs in (r, z), mm, swept into solids; exact volumes, areas and distances."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -41,7 +39,7 @@ class Line:
         along = np.asarray(self.end) - np.asarray(self.start)
         return np.asarray(np.clip((points - np.asarray(self.start)) @ along / (along @ along), 0.0, 1.0))
 
-    def reverse(self) -> Line:
+    def reverse(self) -> "Line":
         """The same piece, from its end to its start."""
         return Line(self.end, self.start, self.tag)
 
@@ -119,7 +117,7 @@ class Arc:
         angle = self.first + share * (self.last - self.first)
         return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
-    def reverse(self) -> Arc:
+    def reverse(self) -> "Arc":
         """The same piece, from its end to its start."""
         return Arc(self.centre, self.radius, self.last, self.first, self.tag)
 

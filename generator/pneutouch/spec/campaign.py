@@ -1,7 +1,5 @@
 """A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file beside the runs."""
 
-from __future__ import annotations
-
 import datetime
 import os
 from pathlib import Path, PurePosixPath
@@ -65,7 +63,7 @@ class ColumnMap(Table):
     volume: Column = _column("volume_mL", "mL")
 
     @model_validator(mode="after")
-    def _known_units(self) -> ColumnMap:
+    def _known_units(self) -> "ColumnMap":
         for key, units in UNITS.items():
             unit = getattr(self, key).unit
             if unit and unit not in units:
@@ -147,7 +145,7 @@ class CampaignRun(Table):
     format: FileFormat | None = Field(default=None, description="How this file is written, likewise.")
 
     @model_validator(mode="after")
-    def _volumes_are_pushed(self) -> CampaignRun:
+    def _volumes_are_pushed(self) -> "CampaignRun":
         if self.volumes_mL is not None and self.kind != "injection":
             raise ValueError(f"volumes_mL: given to a run of kind {self.kind}; must be left out but of an injection")
         return self
@@ -182,14 +180,14 @@ class Campaign(Table):
         return merged_columns(self.columns, run.columns), merged_format(self.format, run.format)
 
     @model_validator(mode="after")
-    def _of_this_format(self) -> Campaign:
+    def _of_this_format(self) -> "Campaign":
         problem = problem_of("campaign", self.campaign_format)
         if problem is not None:
             raise ValueError(f"campaign_format = {shown(self.campaign_format)}: {problem[0]}; {problem[1]}")
         return self
 
     @model_validator(mode="after")
-    def _runs_can_be_read(self) -> Campaign:
+    def _runs_can_be_read(self) -> "Campaign":
         for place, run in enumerate(self.runs):
             try:
                 self.reading(run)
@@ -200,7 +198,7 @@ class Campaign(Table):
         return self
 
     @model_validator(mode="after")
-    def _runs_differ(self) -> Campaign:
+    def _runs_differ(self) -> "Campaign":
         files: dict[str, int] = {}
         keys: dict[tuple[object, ...], int] = {}
         resins: dict[str, str] = {}

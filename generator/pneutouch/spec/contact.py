@@ -1,7 +1,5 @@
 """[contact] of a design file: the object that presses the sensor, and its friction."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, WithJsonSchema, model_validator
@@ -135,7 +133,7 @@ class ContactTable(Table):
     )
 
     @model_validator(mode="after")
-    def _has_its_sizes(self) -> ContactTable:
+    def _has_its_sizes(self) -> "ContactTable":
         missing = [key for key in SIZES[self.object] if getattr(self, key) is None]
         if missing:
             raise FieldsError(f'object = "{self.object}" needs {" and ".join(missing)}', "object", *missing)
@@ -158,7 +156,7 @@ class ContactTable(Table):
         return self
 
     @model_validator(mode="after")
-    def _stands_off_the_axis(self) -> ContactTable:
+    def _stands_off_the_axis(self) -> "ContactTable":
         if self.offset_mm and self.object not in _MOVABLE:
             raise FieldsError(
                 f"offset_mm = {self.offset_mm:g}: a {self.object} presses centrally; only a plate or a ball, an edge "

@@ -3,8 +3,6 @@
 An empty list means not measured. Else there are at least two readings, so that there is a spread; in a curve three.
 """
 
-from __future__ import annotations
-
 import datetime
 from itertools import pairwise
 from pathlib import Path
@@ -56,7 +54,7 @@ class Puck(Table):
     thickness_mm: LengthReadings = Field(default_factory=list, description="Thickness of each puck.")
 
     @model_validator(mode="after")
-    def _density_complete(self) -> Puck:
+    def _density_complete(self) -> "Puck":
         counts = {len(self.mass_g), len(self.diameter_mm), len(self.thickness_mm)}
         if len(counts) > 1:
             raise ValueError(
@@ -80,7 +78,7 @@ class DumbbellSpecimen(Table):
     force_N: CurveReadings = Field(default_factory=list, description="Force at each point.")
 
     @model_validator(mode="after")
-    def _complete(self) -> DumbbellSpecimen:
+    def _complete(self) -> "DumbbellSpecimen":
         given = [self.width_mm, self.thickness_mm, self.extension_mm]
         if any(given) and not all(given):
             raise ValueError("width_mm, thickness_mm, extension_mm and force_N belong together; one of them is empty")
@@ -128,7 +126,7 @@ class GaugeSize(Table):
     )
 
     @model_validator(mode="after")
-    def _agree(self) -> GaugeSize:
+    def _agree(self) -> "GaugeSize":
         if self.came_out is False and self.measured_mm:
             raise ValueError(
                 f"nominal_mm = {self.nominal_mm:g}: came_out = false, but it was measured; give one of both"
@@ -165,7 +163,7 @@ class LeakCap(Table):
     )
 
     @model_validator(mode="after")
-    def _runs(self) -> LeakCap:
+    def _runs(self) -> "LeakCap":
         if len(self.start_kPa) != len(self.end_kPa):
             raise ValueError(
                 f"start_kPa has {len(self.start_kPa)} readings, end_kPa {len(self.end_kPa)}; one each a run"

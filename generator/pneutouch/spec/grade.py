@@ -1,7 +1,5 @@
 """A graded membrane, two base resins mixed droplet by droplet, and the curve of the modulus of such a mix."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Annotated, Any
 
@@ -44,7 +42,7 @@ class Grade(Table):
     )
 
     @model_validator(mode="after")
-    def _sound(self) -> Grade:
+    def _sound(self) -> "Grade":
         for value in self.fractions:
             if not 0 <= value <= 1:
                 raise ValueError(f"fraction = {value:g}: must be from 0 to 1")
@@ -124,7 +122,7 @@ class MixingPoint(Table):
     source: str = Field(min_length=8, description="Table, page, DOI or measurement of the point.")
 
     @model_validator(mode="after")
-    def _one_modulus(self) -> MixingPoint:
+    def _one_modulus(self) -> "MixingPoint":
         if (self.material is None) == (self.shear_modulus_MPa is None):
             raise ValueError(
                 f"the point at fraction = {self.fraction:g} must have either material or shear_modulus_MPa"
@@ -157,7 +155,7 @@ class MixingCurveNames(Table):
     fraction_high: str = Field(min_length=1, description="The softer curve, through the points' fraction_high.")
 
     @model_validator(mode="after")
-    def _apart(self) -> MixingCurveNames:
+    def _apart(self) -> "MixingCurveNames":
         if len(set(self.by_name)) < len(type(self).model_fields):
             raise ValueError(f"curves: {', '.join(self.by_name)}; every curve must have a name of its own")
         return self
@@ -185,7 +183,7 @@ class MixingCurve(Table):
     )
 
     @model_validator(mode="after")
-    def _rising(self) -> MixingCurve:
+    def _rising(self) -> "MixingCurve":
         fractions = [point.fraction for point in self.points]
         for a, b in pairwise(fractions):
             if b <= a:

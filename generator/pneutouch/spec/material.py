@@ -1,7 +1,5 @@
 """A cured material: every number with its source; how its resin is cast, and how it relaxes."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Annotated, Any, Literal
@@ -43,7 +41,7 @@ class Casting(Table):
     source: str = Field(min_length=8, description="Of the ratio, the release agent and the inhibition.")
 
     @model_validator(mode="after")
-    def _can_be_mixed(self) -> Casting:
+    def _can_be_mixed(self) -> "Casting":
         for index, part in enumerate(self.parts_by_mass):
             if not part > 0:
                 raise ValueError(f"parts_by_mass[{index}] = {part:g}: must be more than 0")
@@ -92,7 +90,7 @@ class Relaxation(Table):
     )
 
     @model_validator(mode="after")
-    def _relaxes_to_a_solid(self) -> Relaxation:
+    def _relaxes_to_a_solid(self) -> "Relaxation":
         total = math.fsum(term.share for term in self.terms)
         if not total < 1:
             raise ValueError(f"terms: shares add up to {total:.9g}; it must be less than 1, so that a modulus is left")
@@ -160,7 +158,7 @@ class Mix(Table):
     source: str = Field(min_length=8, description="Table, page or measurement that the fractions are from.")
 
     @model_validator(mode="after")
-    def _whole(self) -> Mix:
+    def _whole(self) -> "Mix":
         for resin, fraction in self.fractions.items():
             if not fraction > 0:
                 raise ValueError(f"fractions.{resin} = {fraction:g}: must be more than 0; leave out resins not in it")
@@ -178,7 +176,7 @@ class ArcGrading(Table):
     shear_modulus_MPa: list[float] = Field(min_length=2, description="Shear modulus at these places.")
 
     @model_validator(mode="after")
-    def _of_one_length(self) -> ArcGrading:
+    def _of_one_length(self) -> "ArcGrading":
         if not len(self.arc) == len(self.stiff_fraction) == len(self.shear_modulus_MPa):
             raise ValueError("along: arc, stiff_fraction and shear_modulus_MPa must be of one length")
         if self.arc[0] != 0 or self.arc[-1] != 1 or any(b <= a for a, b in pairwise(self.arc)):
@@ -292,13 +290,13 @@ class Material(SparseTable):
     making: MakingFacts | None = Field(default=None, description="As of a printer, before whose facts they come.")
 
     @model_validator(mode="after")
-    def _relaxation_of_a_known_modulus(self) -> Material:
+    def _relaxation_of_a_known_modulus(self) -> "Material":
         if self.relaxation and self.shear_modulus_is is None:
             raise ValueError('relaxation needs shear_modulus_is = "relaxed" or "instantaneous"')
         return self
 
     @model_validator(mode="after")
-    def _mix_of_the_base_resins(self) -> Material:
+    def _mix_of_the_base_resins(self) -> "Material":
         if self.mix is not None and set(self.mix.fractions) != set(self.base_resins):
             raise ValueError(
                 f"mix.fractions names {', '.join(sorted(self.mix.fractions)) or 'nothing'}; it must name exactly the "
@@ -307,12 +305,12 @@ class Material(SparseTable):
         return self
 
     @model_validator(mode="after")
-    def _of_matter(self) -> Material:
+    def _of_matter(self) -> "Material":
         _check_positive(self, _POSITIVE)
         return self
 
     @model_validator(mode="after")
-    def _as_dense_as_its_kind(self) -> Material:
+    def _as_dense_as_its_kind(self) -> "Material":
         for key in ("value", "low", "high"):
             number = getattr(self.density_g_per_cm3, key)
             problem = None if number is None else density_problem(number, self.kind)
@@ -321,13 +319,13 @@ class Material(SparseTable):
         return self
 
     @model_validator(mode="after")
-    def _cast_of_one(self) -> Material:
+    def _cast_of_one(self) -> "Material":
         if self.casting is not None and (self.kind != "elastomer" or self.is_digital):
             raise FieldsError("casting: a resin that is cast is an elastomer with one base resin, itself", "casting")
         return self
 
     @model_validator(mode="after")
-    def _elastomer_complete(self) -> Material:
+    def _elastomer_complete(self) -> "Material":
         if self.kind == "elastomer" and (self.shear_modulus_MPa is None or self.poisson_ratio is None):
             raise ValueError("an elastomer needs shear_modulus_MPa and poisson_ratio")
         modulus = self.shear_modulus_MPa
@@ -348,7 +346,7 @@ class Material(SparseTable):
         """The kind as users read it: a cast elastomer is ``cast``."""
         return "cast" if self.is_cast else self.kind
 
-    def by_curve(self, other: MixByCurve) -> Material:
+    def by_curve(self, other: MixByCurve) -> "Material":
         """Copy of this mix with modulus and elongation by another mixing curve, one of `curves`."""
         changes: dict[str, Any] = {
             "shear_modulus_MPa": other.shear_modulus_MPa,

@@ -4,8 +4,6 @@ Section 5 of the paper slides a sensor over such a block (Figure 9). A pattern i
 frequency that it is to have at the speed of the scan; the pitch is then speed over frequency.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializeAsAny, model_validator
@@ -30,7 +28,7 @@ class Block(Table):
     inclusion: str = name("VeroClear", registry="materials", help="Resin of the patterns in it.")
 
     @model_validator(mode="after")
-    def _two(self) -> Block:
+    def _two(self) -> "Block":
         if self.matrix == self.inclusion:
             raise ValueError(f"inclusion = {shown(self.inclusion)} is the matrix too; it must be another material")
         return self
@@ -73,7 +71,7 @@ class Layer(Table):
         return speed / self.target_frequency_Hz
 
     @model_validator(mode="after")
-    def _one_period(self) -> Layer:
+    def _one_period(self) -> "Layer":
         if (self.period() is None) == (self.target_frequency_Hz is None):
             both = "both are" if self.period() is not None else "neither is"
             raise ValueError(f"exactly one of {self.period_key()} and target_frequency_Hz must be given; {both}")
@@ -139,7 +137,7 @@ class RandomPhase(Layer):
         return [speed / frequency for frequency in self.target_frequencies_Hz or []]
 
     @model_validator(mode="after")
-    def _one_period(self) -> RandomPhase:
+    def _one_period(self) -> "RandomPhase":
         if self.target_frequency_Hz is not None:
             raise ValueError("a random-phase layer takes target_frequencies_Hz, a list, not target_frequency_Hz")
         if (self.pitches_mm is None) == (self.target_frequencies_Hz is None):
@@ -178,7 +176,7 @@ class StrutLattice(_Celled):
     strut_radius_mm: float | None = number(None, unit="mm", low=0.001, high=500, help="Radius of the struts.")
 
     @model_validator(mode="after")
-    def _one_radius(self) -> StrutLattice:
+    def _one_radius(self) -> "StrutLattice":
         self._one_size("strut_radius_mm", self.strut_radius_mm)
         return self
 
@@ -193,7 +191,7 @@ class MinimalSurface(_Celled):
     )
 
     @model_validator(mode="after")
-    def _one_thickness(self) -> MinimalSurface:
+    def _one_thickness(self) -> "MinimalSurface":
         self._one_size("thickness_mm", self.thickness_mm)
         if self.form == "network" and self.thickness_mm is not None:
             raise ValueError(f"thickness_mm = {self.thickness_mm:g}: a network has none; give volume_fraction")

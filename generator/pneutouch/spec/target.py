@@ -1,8 +1,6 @@
 """A target: the sensor's required figures, the given parameters, and the weights. One TOML, or the flags of
 ``select``."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -70,7 +68,7 @@ class TargetFigures(Table):
     widest_range: bool = Field(default=False, description="Make the force range as wide as a grade can.")
 
     @model_validator(mode="after")
-    def _stiffness_is_ordered(self) -> TargetFigures:
+    def _stiffness_is_ordered(self) -> "TargetFigures":
         least, most = self.stiffness_least_N_per_mm, self.stiffness_most_N_per_mm
         if least is not None and most is not None and least > most:
             raise FieldsError(
@@ -97,7 +95,7 @@ class TargetFigures(Table):
         return self
 
     @model_validator(mode="after")
-    def _requirement_of_a_grade(self) -> TargetFigures:
+    def _requirement_of_a_grade(self) -> "TargetFigures":
         both_kPa = self.same_sensitivity_at_kPa
         if both_kPa is None:
             return self
@@ -150,7 +148,7 @@ class Given(Table):
     graded: bool = Field(default=False, description="Let the mix differ between pole and rim; the solid searches.")
 
     @model_validator(mode="after")
-    def _wall_below_radius(self) -> Given:
+    def _wall_below_radius(self) -> "Given":
         radius, wall = self.inner_radius_mm, self.wall_thickness_mm
         if radius is not None and wall is not None and wall >= radius:
             raise FieldsError(
@@ -161,7 +159,7 @@ class Given(Table):
         return self
 
     @model_validator(mode="after")
-    def _mix_or_materials(self) -> Given:
+    def _mix_or_materials(self) -> "Given":
         if self.materials is not None and (self.mix is not None or self.graded):
             raise FieldsError(
                 "materials and a mix contradict each other; give one of them",
@@ -205,7 +203,7 @@ class Setting(SparseTable):
         return [given] if isinstance(given, str) else given
 
     @model_validator(mode="after")
-    def _processes_without_others(self) -> Setting:
+    def _processes_without_others(self) -> "Setting":
         if self.processes is None:
             return self
         if "any" in self.processes and len(self.processes) > 1:
@@ -265,7 +263,7 @@ class Target(SparseTable):
     have: Shelf = Shelf()
 
     @model_validator(mode="after")
-    def _fits(self) -> Target:
+    def _fits(self) -> "Target":
         largest, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
         wall = self.given.wall_thickness_mm or 0.0
         if largest is not None and radius is not None and 2 * (radius + wall) > largest:
@@ -278,7 +276,7 @@ class Target(SparseTable):
         return self
 
     @model_validator(mode="after")
-    def _resins_on_the_shelf(self) -> Target:
+    def _resins_on_the_shelf(self) -> "Target":
         missing = [name for name in self.given.materials or () if not self.have.holds("materials", name)]
         if missing:
             raise FieldsError(
@@ -289,7 +287,7 @@ class Target(SparseTable):
         return self
 
     @model_validator(mode="after")
-    def _mix_on_one_machine(self) -> Target:
+    def _mix_on_one_machine(self) -> "Target":
         if self.setting.processes is not None and (self.given.mix is not None or self.given.graded):
             mixed = "given.graded" if self.given.graded else "given.mix"
             raise FieldsError(
@@ -300,7 +298,7 @@ class Target(SparseTable):
         return self
 
     @model_validator(mode="after")
-    def _grade_and_its_requirement(self) -> Target:
+    def _grade_and_its_requirement(self) -> "Target":
         target, graded = self.target, self.given.graded
         if target.is_for_a_grade and not graded:
             raise FieldsError(

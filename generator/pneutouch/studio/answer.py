@@ -1,7 +1,5 @@
 """Answers to the page: figures and drawing at once by the atlas, a moment later by the model that ``predict`` takes."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -85,7 +83,7 @@ class QuickAnswer(NamedDesign):
     """The answer of the atlas, without intervals; ``outside``: why it has none; ``version``: of the base's file."""
 
     version: str
-    drawing: DrawnDesign
+    drawing: "DrawnDesign"
     outside: str | None
 
 
@@ -95,7 +93,7 @@ class FullAnswer(NamedDesign):
 
     check: Mapping[str, Any]
     jobs: list[Mapping[str, Any]]
-    walls: list[PressedWall | None]
+    walls: "list[PressedWall | None]"
 
 
 class Answers:
@@ -139,7 +137,7 @@ class Answers:
         evaluation = self._last[1]
         return PredictedDesign(prediction=Prediction(evaluation).to_dict(), curves=_curves(evaluation))
 
-    def view(self, question: Question) -> ViewedDesign:
+    def view(self, question: Question) -> "ViewedDesign":
         """The bodies as meshes to look at. Raises InputError that names the field."""
         assembly = assemble(load_scene(question.source(self._bases, self._library), {}, self._library))
         return ViewedDesign([_mesh(solid.mesh(_TOLERANCE)) for solid in assembly.solids])

@@ -1,7 +1,5 @@
 """Data of a calibration: indentation curves and injections of one sensor, as arrays of one shape."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -54,12 +52,12 @@ class Observations:
         """Driving pressures of the curves as the campaign names them, kPa, ascending, each once."""
         return tuple(sorted({curve.run.driving_pressure_kPa for curve in self.curves}))
 
-    def without(self, driving_pressure_kPa: float) -> Observations:
+    def without(self, driving_pressure_kPa: float) -> "Observations":
         """These observations without the curves of a driving pressure, kPa."""
         kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa != driving_pressure_kPa)
         return replace(self, curves=kept)
 
-    def only(self, driving_pressure_kPa: float) -> Observations:
+    def only(self, driving_pressure_kPa: float) -> "Observations":
         """Only the curves at a driving pressure, kPa, without the injections."""
         kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa == driving_pressure_kPa)
         return replace(self, curves=kept, injections=())
@@ -116,7 +114,7 @@ class ObservationPoints(NamedTuple):
             [np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts]
         )
 
-    def with_values(self, values: Array) -> ObservationPoints:
+    def with_values(self, values: Array) -> "ObservationPoints":
         """These points with other measured values, (N,), in the order of `values`."""
         force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
         return self._replace(

@@ -5,8 +5,6 @@ curve: each term follows q' + q/tau = share f', with f the relaxed force or pres
 or its digital materials are published: shares and times are the simulator's own.
 """
 
-from __future__ import annotations
-
 import io
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
@@ -80,7 +78,7 @@ class ScatterModel:
     )
 
     @classmethod
-    def none(cls) -> ScatterModel:
+    def none(cls) -> "ScatterModel":
         """No scatter and no ageing."""
         return cls(modulus=0.0, wall=0.0, dead_volume=0.0, gain=0.0, reset=0.0)
 
@@ -94,7 +92,7 @@ class SimulatedSpecimens:
     dead_volume: Array
 
     @classmethod
-    def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> SimulatedSpecimens:
+    def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> "SimulatedSpecimens":
         """Draw ``count`` specimens."""
         return cls(
             np.exp(scatter.modulus * rng.standard_normal(count)),
@@ -239,12 +237,12 @@ class RigModel:
     )
 
     @classmethod
-    def perfect(cls) -> RigModel:
+    def perfect(cls) -> "RigModel":
         """A rig that reads the true values."""
         unlimited = dict.fromkeys(("cutoff", "force_range", "pressure_range"), np.inf)
         return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
 
-    def with_gauge(self, reading: GaugeReading) -> RigModel:
+    def with_gauge(self, reading: GaugeReading) -> "RigModel":
         """The rig with a gauge's noise, step and range, each where it is stated and this rig has the default."""
         paper = RigModel()
         gauge = {"pressure_noise": reading.noise, "pressure_step": reading.step, "pressure_range": reading.limit}

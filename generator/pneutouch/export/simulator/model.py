@@ -1,7 +1,5 @@
 """A sensor for a simulator: its masses and inertia in m, kg and N, written as MJCF for MuJoCo and as URDF."""
 
-from __future__ import annotations
-
 import pprint
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -39,12 +37,12 @@ class RigidInertia:
         """Inertia about the centre of mass, kg m2 (3, 3)."""
         return self.about_origin - _steiner(self.mass, self.centre)
 
-    def __add__(self, other: RigidInertia) -> RigidInertia:
+    def __add__(self, other: "RigidInertia") -> "RigidInertia":
         mass = self.mass + other.mass
         centre = (self.mass * self.centre + other.mass * other.centre) / mass
         return RigidInertia(mass, centre, self.about_origin + other.about_origin)
 
-    def without(self, part: RigidInertia) -> RigidInertia:
+    def without(self, part: "RigidInertia") -> "RigidInertia":
         """Inertia that is left when a part of it moves on its own."""
         return self + RigidInertia(-part.mass, part.centre, -part.about_origin)
 

@@ -3,8 +3,6 @@
 `SensorBatch` holds the inputs of the sensors; ``nu`` is the volume coordinate of `recipe.AtlasRecipe`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
@@ -47,11 +45,11 @@ class SensorBatch:
         return self.inner_radius.size
 
     @classmethod
-    def join(cls, batches: Sequence[SensorBatch]) -> SensorBatch:
+    def join(cls, batches: "Sequence[SensorBatch]") -> "SensorBatch":
         """One batch of the sensors of several, one after the other."""
         return cls(*(np.concatenate([getattr(batch, field.name) for batch in batches]) for field in fields(cls)))
 
-    def take(self, rows: Index | Flags | slice) -> SensorBatch:
+    def take(self, rows: Index | Flags | slice) -> "SensorBatch":
         """Batch of the selected sensors, by index, mask or slice."""
         return SensorBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
@@ -82,7 +80,7 @@ class PressTrack(NamedTuple):
     margin: Array
     ok: Flags
 
-    def each(self, change: Callable[[Any], Any]) -> PressTrack:
+    def each(self, change: Callable[[Any], Any]) -> "PressTrack":
         """Track with the function ``change`` applied to every array."""
         return PressTrack(
             change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
@@ -123,7 +121,7 @@ class AtlasPress:
         """Cavity volume (R0^3) at nu, (n,)."""
         return REST_VOLUME + nu * self.reach
 
-    def rows(self, rows: Index | Flags) -> AtlasPress:
+    def rows(self, rows: Index | Flags) -> "AtlasPress":
         """Press of the selected sensors, with their inflated states."""
         part = object.__new__(AtlasPress)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]

@@ -4,8 +4,6 @@ The tables hold coefficients of uniform B-splines: few numbers, smooth derivativ
 stored as JSON in the file of the shipped table.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache

@@ -1,7 +1,5 @@
 """Figures of many sensors at once from the atlas, by the functions of `response` as for every other curve."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, NamedTuple
@@ -51,13 +49,13 @@ class AtlasResponse(NamedTuple):
     force: Array
     rise: Array
 
-    def take(self, rows: Index | Flags) -> AtlasResponse:
+    def take(self, rows: Index | Flags) -> "AtlasResponse":
         """Responses of the selected sensors."""
         some: list[Any] = [column[rows] for column in self[1:]]
         return AtlasResponse(Figures(*(column[rows] for column in self.lines)), *some)
 
     @classmethod
-    def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
+    def join(cls, parts: "Sequence[AtlasResponse]") -> "AtlasResponse":
         """Responses of several batches, one after the other."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
         solved = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]

@@ -3,8 +3,6 @@
 Also the first limit of free inflation over the wall ratio, limit point or break strain, for many domes at once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -37,7 +35,7 @@ class AtlasPoint(NamedTuple):
     supported: Flags
     folded: Flags
 
-    def each(self, change: Callable[[Any], Any]) -> AtlasPoint:
+    def each(self, change: Callable[[Any], Any]) -> "AtlasPoint":
         """Point with the function ``change`` applied to every array."""
         return AtlasPoint(*map(change, self))
 
@@ -156,7 +154,7 @@ class Atlas:
         self._grid = axes(recipe)
         self._stacked: dict[tuple[str, ...], Array] = {}
 
-    def boxed(self, recipe: AtlasRecipe) -> Atlas:
+    def boxed(self, recipe: AtlasRecipe) -> "Atlas":
         """An atlas with the same tables and another recipe, which may differ only in the box (limits of inputs)."""
         return Atlas(self._tables, recipe)
 

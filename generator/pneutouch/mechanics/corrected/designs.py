@@ -5,8 +5,6 @@ The solid gives the factors for some of the sensors. Space mapping (Bandler et a
 solved, and is searched again. Also a state of the solid in the form of an atlas response.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -50,11 +48,11 @@ class ContactFactors(NamedTuple):
     logs: Array
 
     @classmethod
-    def none(cls) -> ContactFactors:
+    def none(cls) -> "ContactFactors":
         """Factors without samples: nothing is corrected."""
         return cls(np.zeros((0, 4)), np.zeros((0, 5)))
 
-    def with_sample(self, place: Array, atlas: AtlasResponse, solid: AtlasResponse) -> ContactFactors:
+    def with_sample(self, place: Array, atlas: AtlasResponse, solid: AtlasResponse) -> "ContactFactors":
         """Factors with one more sensor (one row each) added; unchanged if it is known or has no figures."""
         with np.errstate(invalid="ignore", divide="ignore"):
             log = np.log(figures_of(solid) / figures_of(atlas))

@@ -7,8 +7,6 @@ Tractions of contact and friction are carried from step to step as in `model`: t
 would give the tangent negative modes and let points slide that stick.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -49,10 +47,10 @@ class SurfaceStatus(PointStatus):
         """Mask of the points that stick."""
         return np.asarray(self.bearing & ~self.sliding)
 
-    def _reversed(self, other: SurfaceStatus) -> Flags:
+    def _reversed(self, other: "SurfaceStatus") -> Flags:
         return np.asarray(np.einsum("...i,...i->...", self.sign, other.sign) < 0.0)
 
-    def then(self, new: PointStatus) -> SurfaceStatus:
+    def then(self, new: PointStatus) -> "SurfaceStatus":
         """Status to try next if solving with this one gave ``new``: directions are kept; reversed points stick."""
         assert isinstance(new, SurfaceStatus)
         both, back = self.sliding & new.sliding, self._reversed(new)

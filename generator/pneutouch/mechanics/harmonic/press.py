@@ -4,8 +4,6 @@ Also the greatest stretch on the faces of a wall without rotational symmetry, an
 prediction.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -315,7 +313,7 @@ class ShearCurve:
     slips_from: float | None
     ended: str | None
 
-    def scaled(self, force: float, rise: float) -> ShearCurve:
+    def scaled(self, force: float, rise: float) -> "ShearCurve":
         """The curve with forces, moment and stiffness times ``force``, and pressure rise times ``rise``."""
         return replace(
             self,
@@ -351,7 +349,7 @@ class OffAxisCurve:
     to_end: RangeCurve
     shear: ShearCurve | None = None
 
-    def scaled(self, force: float, rise: float) -> OffAxisCurve:
+    def scaled(self, force: float, rise: float) -> "OffAxisCurve":
         """The curve with forces and moments times ``force``, and pressure rises times ``rise``."""
         sheared = None if self.shear is None else self.shear.scaled(force, rise)
         to_end = replace(self.to_end, force=force * self.to_end.force, rise=rise * self.to_end.rise)

@@ -1,7 +1,5 @@
 """The model ``atlas``: results of the solid, interpolated for a sensor."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -125,7 +123,7 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
     ]
 
 
-def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: _FreeCurves) -> Answered:
+def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: "_FreeCurves") -> Answered:
     """Answer for one sensor, whose driving pressures are the ``rows`` of a pass, and its free inflation."""
     response, press = passed.response, passed.press
     limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
@@ -216,7 +214,7 @@ class _FreeCurves(NamedTuple):
     pressure: Array
 
     @classmethod
-    def of(cls, slices: AtlasSlices, walls: Index) -> _FreeCurves:
+    def of(cls, slices: AtlasSlices, walls: Index) -> "_FreeCurves":
         """The curves at some of the wall ratios of ``slices``."""
         beyond = np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]
         steps = np.concatenate([np.linspace(0.0, 1.0, _INFLATED + 1), beyond])

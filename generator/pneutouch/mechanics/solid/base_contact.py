@@ -1,7 +1,5 @@
 """Frictionless contact with the rigid base under the dome: a penalty potential on both faces of the wall."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +19,7 @@ class BaseLoad:
     traction: float = 0.0
     penetration: float = 0.0
 
-    def __add__(self, other: BaseLoad) -> BaseLoad:
+    def __add__(self, other: "BaseLoad") -> "BaseLoad":
         """Total of two loads on different parts of the wall."""
         most = (max(a, b) for a, b in ((self.traction, other.traction), (self.penetration, other.penetration)))
         return BaseLoad(self.force + other.force, *most)
@@ -43,7 +41,7 @@ class BaseContact:
 
     noise = 0.0
 
-    def __init__(self, outer: BaseFace, inner: BaseFace, faces: FaceSums) -> None:
+    def __init__(self, outer: "BaseFace", inner: "BaseFace", faces: FaceSums) -> None:
         self.outer, self.inner, self._faces = outer, inner, faces
 
     def at(self, x: Array) -> TermState:

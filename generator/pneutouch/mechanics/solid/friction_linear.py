@@ -9,8 +9,6 @@ stiffness has a rank-one change (Katzenelson 1965, Bell Syst. Tech. J. 44, 1605,
 doi:10.1002/j.1538-7305.1965.tb04195.x). Only the points are stored: the response of their tractions to loads on them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -42,7 +40,7 @@ class PointStatus:
         """Numbers of the outer wall's edges with points in contact."""
         return np.flatnonzero(self.touching.any(axis=tuple(range(1, self.touching.ndim))))
 
-    def then(self, new: PointStatus) -> PointStatus:
+    def then(self, new: "PointStatus") -> "PointStatus":
         """Status to try next if solving with this one gave the status ``new``.
 
         A point that would reverse its sliding sticks first: otherwise it could alternate between both signs for ever.
@@ -62,7 +60,7 @@ class PointTractions:
     normal: Array
     trial: Array
 
-    def towards(self, other: PointTractions, share: float | Array) -> PointTractions:
+    def towards(self, other: "PointTractions", share: float | Array) -> "PointTractions":
         """Tractions at a share of the way to ``other``, or at shares (n,), which become the first axis."""
         return PointTractions(_between(self.normal, other.normal, share), _between(self.trial, other.trial, share))
 

@@ -3,8 +3,6 @@
 Most are bodies of revolution; a cylinder and an edge lie across the dome. Imported only if such an object presses.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -42,7 +40,7 @@ class UndersidePiece(NamedTuple):
     curve: float = 0.0
     radius: float = 0.0
 
-    def scaled(self, factor: float) -> UndersidePiece:
+    def scaled(self, factor: float) -> "UndersidePiece":
         """The piece with all lengths multiplied by ``factor``."""
         start, r, z, radius = (factor * x for x in (self.start, self.r, self.z, self.radius))
         return UndersidePiece(start, r, z, self.slope, self.curve / factor, radius)
@@ -118,11 +116,11 @@ class RigidObject:
         r = np.linspace(self.span[0], min(self.span[1], reach), count)
         return np.stack([r, self.underside(r)[0]], axis=1)
 
-    def at(self, height: float) -> RigidObject:
+    def at(self, height: float) -> "RigidObject":
         """The body with its lowest point at another height."""
         return replace(self, height=height)
 
-    def scaled(self, factor: float) -> RigidObject:
+    def scaled(self, factor: float) -> "RigidObject":
         """The body with all lengths multiplied by ``factor``."""
         return replace(
             self,

@@ -1,7 +1,5 @@
 """Contact with a rigid object, by default a flat plate with a rounded rim: a penalty potential on the outer wall."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -46,7 +44,7 @@ class Indenter(Protocol):
         """Height of the underside at r and its first two derivatives; all shaped like r."""
         ...
 
-    def at(self, height: float) -> Indenter:
+    def at(self, height: float) -> "Indenter":
         """The body at another height."""
         ...
 
@@ -76,7 +74,7 @@ class Plate:
         beyond = np.maximum(r - self.radius, 0.0)
         return self.height + 0.5 * beyond**2 / self.rim, beyond / self.rim, np.where(beyond > 0.0, 1.0 / self.rim, 0.0)
 
-    def at(self, height: float) -> Plate:
+    def at(self, height: float) -> "Plate":
         """The plate at another height."""
         return Plate(height, self.radius, self.rim)
 
@@ -208,7 +206,7 @@ class Contact(FacePoints):
         """Second derivative of the energy, (n_edges, 2 n, 2 n), if the `active` points (n_edges, n_points) touch."""
         return self.stiffened(active, touch.slope, -touch.traction * touch.curve)
 
-    def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> Footprint:
+    def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> "Footprint":
         """Edges of the contact, largest pressure, and largest gap between wall and object inside the contact.
 
         ``annular``: the object meets the wall around the axis, not on it, so that a gap on the axis is no separation.

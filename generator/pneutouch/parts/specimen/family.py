@@ -1,7 +1,5 @@
 """Interface of a family of patterns, with the boxes, meshes and checks that the families share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -32,7 +30,7 @@ class Box:
         a, b, c = (high - low for low, high in zip(self.low, self.high, strict=True))
         return a * b * c
 
-    def gap(self, other: Box) -> float:
+    def gap(self, other: "Box") -> float:
         """Greatest gap along an axis between the boxes, mm; negative if they overlap."""
         return max(max(self.low[k] - other.high[k], other.low[k] - self.high[k]) for k in range(3))
 
@@ -54,7 +52,7 @@ class Mesh:
         vertices, triangles = welded(self.vertices, self.triangles)
         return is_closed(self.triangles, len(self.vertices)) and is_closed(triangles, len(vertices))
 
-    def compact(self) -> Mesh:
+    def compact(self) -> "Mesh":
         """The mesh without unused vertices."""
         used = np.zeros(len(self.vertices), bool)
         used[self.triangles.reshape(-1)] = True

@@ -6,8 +6,6 @@ then show whether the place is thin in one direction (a wall, a gap) or in two (
 flank how high the flank is (a ridge or a groove on a face).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, cast
 
@@ -119,7 +117,7 @@ class Chords:
         """Far ends, (n, 3), mm."""
         return self.start + self.length[:, None] * self.direction
 
-    def take(self, rows: NDArray[Any]) -> Chords:
+    def take(self, rows: NDArray[Any]) -> "Chords":
         """Chords of the given rows."""
         return Chords(*(getattr(self, field.name)[rows] for field in fields(self)))
 

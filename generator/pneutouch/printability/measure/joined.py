@@ -4,8 +4,6 @@ With NumPy only: SciPy's `csgraph` and `ndimage` give the same in as much time (
 half as long as `import numpy, scipy.linalg`, longer than these rules take on a dome and its connector.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -151,7 +149,7 @@ class Hollow:
         x, y, z = (float(value) for value in self.bounds.mean(axis=0))
         return x, y, z
 
-    def alike(self, other: Hollow) -> bool:
+    def alike(self, other: "Hollow") -> bool:
         """True if both are the same hollow."""
         return bool(np.allclose(self.bounds, other.bounds, atol=1e-6))
 

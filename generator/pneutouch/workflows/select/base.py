@@ -2,8 +2,6 @@
 
 Also the pair of base resins to mix: resolved, checked against the printer, and offered to the search as resins."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace

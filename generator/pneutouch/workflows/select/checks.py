@@ -5,8 +5,6 @@ Connector: the space for its parts around a dome, the diameter of the whole sens
 Also the design file that a candidate becomes, and what ``check`` says of it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -2,8 +2,6 @@
 
 Also a selection with its gauge: the one named, or the one that covers the range and detects the smallest force."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, get_args

@@ -3,8 +3,6 @@ process.
 
 For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace

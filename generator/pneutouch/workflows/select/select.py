@@ -1,7 +1,5 @@
 """Selection of designs for a target: resolve names, search, check, and confirm the best by the solid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial

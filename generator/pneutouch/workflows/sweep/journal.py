@@ -3,8 +3,6 @@
 A line is ``checksum json``. One that does not agree with its checksum was cut off by a kill or damaged later: it is
 dropped, and its points are computed again."""
 
-from __future__ import annotations
-
 import contextlib
 import fcntl
 import json
@@ -77,7 +75,7 @@ class FinishedPoints:
         if records:
             self._places[records[0]["point"]] = place
 
-    def records(self, journal: Journal) -> Iterator[Record]:
+    def records(self, journal: "Journal") -> Iterator[Record]:
         """Records of all points in their order. Raises ComputationError for a journal that was changed meanwhile."""
         found = journal.at(place for _, place in sorted(self._places.items()))
         for expected, record in zip_longest(range(self._done.size), found):
@@ -214,7 +212,7 @@ class WorkFolder:
         self._lock: FileIO | None = None
         self._made: list[Path] = []
 
-    def __enter__(self) -> WorkFolder:
+    def __enter__(self) -> "WorkFolder":
         """Make and lock the folder. Raises InputError if that fails, another process holds it, or it has other
         files."""
         try:
