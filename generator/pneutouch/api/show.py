@@ -1,20 +1,15 @@
 """Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel
 
 from pneutouch.catalogue.listing import listing
+from pneutouch.parts import Assembly
 from pneutouch.results.record import plain
 from pneutouch.spec.fields import declarations
-
-if TYPE_CHECKING:
-    from pneutouch.parts import Assembly
-
 
 LINES, WIDTH, ROWS = 10, 110, 40
 """Greatest number of lines of a text, of letters in a line, and of rows of a table in a notebook."""

@@ -1,7 +1,7 @@
 """``pneutouch calibrate``: fit the model to the sensor in hand."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -9,12 +9,10 @@ from pneutouch.cli.app import JsonOption, OutOption, app, print_json
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
+from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.options import CalibrationOptions
 from pneutouch.wording import counted
-
-if TYPE_CHECKING:
-    from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
 
 
 @app.command()

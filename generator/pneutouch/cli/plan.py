@@ -2,7 +2,7 @@
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -11,11 +11,9 @@ from pneutouch.cli.commands import option
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, notify, report_next, table_text
 from pneutouch.errors import PneutouchError
+from pneutouch.results.plan import PlannedCampaign
 from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
-
-if TYPE_CHECKING:
-    from pneutouch.results.plan import PlannedCampaign
 
 
 @cli.app.command()

@@ -1,14 +1,12 @@
 """The answer to a target as text for people."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.cli.terminal import table_text
 from pneutouch.selection import Candidate
+from pneutouch.selection.graded import GradeTrial
 from pneutouch.units import KPA
 from pneutouch.wording import counted, tenths_below
 from pneutouch.workflows.select.document import (
@@ -25,12 +23,8 @@ from pneutouch.workflows.select.document import (
 )
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
+from pneutouch.workflows.select.search import TargetAnswer
 from pneutouch.workflows.select.select import SelectionRun
-
-if TYPE_CHECKING:
-    from pneutouch.selection.graded import GradeTrial
-    from pneutouch.workflows.select.search import TargetAnswer
-
 
 HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]

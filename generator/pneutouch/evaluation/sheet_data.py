@@ -7,24 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from pneutouch.arrays import Array
-    from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
-    from pneutouch.mechanics.rating import Rating
-    from pneutouch.mechanics.response import Figures
-    from pneutouch.mechanics.uncertainty.document import GasNotes
-    from pneutouch.mechanics.viscous.describe import ViscousRuns
-    from pneutouch.parts import Assembly
-    from pneutouch.parts.mould.assembly import SiliconeBatch
-    from pneutouch.printability import Finding
-    from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
-    from pneutouch.results.printing import JobEstimate
-    from pneutouch.results.uncertainty import UncertaintyRecord
-    from pneutouch.selection.front import TradeOffFront
-    from pneutouch.spec.contact import ContactKind
+from pneutouch.arrays import Array
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
+from pneutouch.mechanics.rating import Rating
+from pneutouch.mechanics.response import Figures
+from pneutouch.mechanics.uncertainty.document import GasNotes
+from pneutouch.mechanics.viscous.describe import ViscousRuns
+from pneutouch.parts import Assembly
+from pneutouch.parts.mould.assembly import SiliconeBatch
+from pneutouch.printability import Finding
+from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
+from pneutouch.results.printing import JobEstimate
+from pneutouch.results.uncertainty import UncertaintyRecord
+from pneutouch.selection.front import TradeOffFront
+from pneutouch.spec.contact import ContactKind
 
 
 class AgeingData(NamedTuple):

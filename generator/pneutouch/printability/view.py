@@ -1,16 +1,17 @@
 """A subject measured: every measurement of a part or a job is made once, when a rule requires it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
 from pneutouch.body.solid import mesh_of
+from pneutouch.mechanics import Sensor, SensorPrediction
+from pneutouch.mechanics.prediction import CurveOutcome
+from pneutouch.mechanics.rating import Rating
 from pneutouch.parts.glue import GlueSurface
 from pneutouch.printability.measure.cavities import PartVoxels, Pocket, balls, build_frame, fill, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
@@ -18,13 +19,8 @@ from pneutouch.printability.measure.joined import Hollow, voids
 from pneutouch.printability.measure.surface import SurfaceMesh, SurfaceSamples, sample
 from pneutouch.printability.measure.thin import OPENINGS, ThinPlace, thin_places
 from pneutouch.printability.subject import Point3, PrintItem, PrintSubject
+from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.printer import FeatureSize, Printer
-
-if TYPE_CHECKING:
-    from pneutouch.mechanics import Sensor, SensorPrediction
-    from pneutouch.mechanics.prediction import CurveOutcome
-    from pneutouch.mechanics.rating import Rating
-    from pneutouch.spec.gauge import Gauge
 
 
 class WettedSurface(NamedTuple):

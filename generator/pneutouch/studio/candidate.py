@@ -3,36 +3,28 @@
 A page state is a base that the page has open, and the fields in which the design differs from it.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.cli.select import saving_command
 from pneutouch.errors import InputError
 from pneutouch.output.new import free_name
+from pneutouch.selection import Candidate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
-from pneutouch.spec.target import Shelf
+from pneutouch.spec.target import Shelf, Target
 from pneutouch.spec.toml_text import assignments
 from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
 from pneutouch.workflows.select.checks import assigned
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.selection import Candidate
-    from pneutouch.spec.target import Target
-    from pneutouch.workflows.select.graded import GradedSelectionRun
-    from pneutouch.workflows.select.select import SelectionRun
-
+from pneutouch.workflows.select.graded import GradedSelectionRun
+from pneutouch.workflows.select.select import SelectionRun
 
 FigureRow = tuple[str, str, str]
 """Name of a figure, its value with the unit, and a remark, which may be empty."""
