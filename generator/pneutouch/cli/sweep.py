@@ -1,7 +1,5 @@
 """``pneutouch sweep``: many designs to one dataset."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -88,7 +86,7 @@ def sweep(
 
 def _plan(
     file: Path | None, design: str | None, over: list[str], changed: dict[str, Any], options: dict[str, str | None]
-) -> SweepPlan:
+) -> "SweepPlan":
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and over and design is None and file.suffix != ".toml":
@@ -104,7 +102,7 @@ def _plan(
     return plan_of_flags(design, over, changed, **options)
 
 
-def _free_place(plan: SweepPlan, out: Path | None, charts: Path | None) -> Path:
+def _free_place(plan: "SweepPlan", out: Path | None, charts: Path | None) -> Path:
     """The file of the dataset. Raises InputError if anything required cannot be drawn or written."""
     from pneutouch.output.files import check_writable
     from pneutouch.workflows.sweep.dataset import check_companions
@@ -119,7 +117,7 @@ def _free_place(plan: SweepPlan, out: Path | None, charts: Path | None) -> Path:
 
 
 def _report(
-    done: SweepResult, rows: list[dict[str, Any]], written: list[Path], maps: list[Path], *, json: bool
+    done: "SweepResult", rows: list[dict[str, Any]], written: list[Path], maps: list[Path], *, json: bool
 ) -> None:
     """Print the table, and last the dataset's path, on stdout; the states by outcome and other files on stderr."""
     if json:

@@ -1,7 +1,5 @@
 """GLB and binary STL through trimesh, bodies cut open for pictures, and the meshes of the 3D view of a page."""
 
-from __future__ import annotations
-
 import base64
 import json
 from collections.abc import Sequence
@@ -145,13 +143,13 @@ def shaded_glb(bodies: Sequence[ShadedBody]) -> bytes:
     return bytes(scene.export(file_type="glb", include_normals=True))
 
 
-def _mesh(body: Body) -> trimesh.Trimesh:
+def _mesh(body: Body) -> "trimesh.Trimesh":
     import trimesh
 
     return trimesh.Trimesh(body.vertices, body.triangles, process=False)
 
 
-def _scene(bodies: tuple[Body, ...]) -> trimesh.Scene:
+def _scene(bodies: tuple[Body, ...]) -> "trimesh.Scene":
     import trimesh
     from trimesh.visual.material import PBRMaterial
 

@@ -1,7 +1,5 @@
 """Properties of a pressure gauge that limit its readings: range, noise, step, rate and error."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -75,7 +73,7 @@ class GaugeReading:
         return "gauge noise" if self.noise >= (self.step or 0.0) / math.sqrt(12.0) else "gauge resolution"
 
 
-def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
+def gauge_reading(gauge: "Gauge | None", ambient_pressure: float) -> GaugeReading:
     """Reading of ``gauge`` at ``ambient_pressure`` (MPa); None stands for the gauge of the paper's rig."""
     if gauge is None:
         return GaugeReading(
@@ -97,7 +95,7 @@ def _pressure(stated_kPa: Quantity | None) -> float | None:
     return value_kPa * KPA
 
 
-def _step(gauge: Gauge) -> float | None:
+def _step(gauge: "Gauge") -> float | None:
     if gauge.resolution_kPa is not None:
         return _pressure(gauge.resolution_kPa)
     transfer = gauge.transfer

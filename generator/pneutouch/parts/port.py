@@ -4,8 +4,6 @@ A port is drawn in (radius, height over the plate's face): heights increase away
 continues inside the plate.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -47,7 +45,7 @@ class PortShape:
     length: float
     engaged: float = 0.0
     fitting_bore: float = 0.0
-    lugs: tuple[Prism, ...] = ()
+    lugs: "tuple[Prism, ...]" = ()
     lug_volume: float = 0.0
 
     @property
@@ -133,7 +131,7 @@ def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
     )
 
 
-def _lug(port: Luer, turn: float) -> Prism:
+def _lug(port: Luer, turn: float) -> "Prism":
     """A sector of a ring below the mouth, centred on the angle ``turn`` (rad)."""
     from pneutouch.body import Prism
 

@@ -1,7 +1,5 @@
 """Charts of presses, predicted or measured, and of the sensitivity, inflation and deformed wall of a prediction."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -204,7 +202,7 @@ def shapes(prediction: SensorPrediction) -> str:
         return svg(drawn)
 
 
-def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> None:
+def _shape(ax: "Axes", state: SensorState, shape: DeformedShape, colours: "ScalarMappable") -> None:
     """Draw one deformed half section over the unloaded one, with the object that presses it."""
     from matplotlib.collections import PolyCollection
 

@@ -3,8 +3,6 @@
 They stand in PDFs, image files and the README, which cannot be turned.
 """
 
-from __future__ import annotations
-
 import io
 import math
 from collections.abc import Sequence
@@ -257,7 +255,7 @@ def _image(bodies: list[ShadedBody]) -> Array:
     return pixels(bodies, *_PIXELS, PRESSED_TILT_DEG)
 
 
-def _scale(drawn: Figure, ax: Axes, view: PressedView) -> None:
+def _scale(drawn: "Figure", ax: "Axes", view: PressedView) -> None:
     """Draw the colour scale of the pressure, with its unit, into axes."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LinearSegmentedColormap

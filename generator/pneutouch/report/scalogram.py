@@ -1,7 +1,5 @@
 """The scan chart: each state's pressure signal above, its scalogram below, as the paper's figure 9."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -80,7 +78,7 @@ def _outline(given: Signal) -> tuple[Array, Array]:
     return np.repeat(given.time[starts], 2), ends.ravel()
 
 
-def _draw_scalogram(ax: Axes, scalogram: Scalogram, top: float) -> QuadMesh:
+def _draw_scalogram(ax: "Axes", scalogram: Scalogram, top: float) -> "QuadMesh":
     """Amplitudes in kPa over time and frequency, the cone of influence hatched."""
     kept = np.unique(np.linspace(0, len(scalogram.time) - 1, _COLUMNS).round().astype(int))
     time, frequency = scalogram.time[kept], scalogram.frequency
@@ -100,7 +98,7 @@ def _draw_scalogram(ax: Axes, scalogram: Scalogram, top: float) -> QuadMesh:
     return mesh
 
 
-def _colours() -> Colormap:
+def _colours() -> "Colormap":
     """Colour map from white to ink, evenly darker, so that it reads in grayscale as in colour."""
     from matplotlib.colors import LinearSegmentedColormap
 

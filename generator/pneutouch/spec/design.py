@@ -1,7 +1,5 @@
 """The design file: the TOML file that a user writes, one a design. Defaults are the paper's sensor."""
 
-from __future__ import annotations
-
 import datetime
 import math
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -107,7 +105,7 @@ class Membrane(SparseTable):
     )
 
     @model_validator(mode="after")
-    def _wall_below_radius(self) -> Membrane:
+    def _wall_below_radius(self) -> "Membrane":
         if self.wall_thickness_mm >= self.inner_radius_mm:
             raise FieldsError(
                 f"wall_thickness_mm = {self.wall_thickness_mm:g} must be less than "
@@ -118,7 +116,7 @@ class Membrane(SparseTable):
         return self
 
     @property
-    def dome(self) -> DomeShape:
+    def dome(self) -> "DomeShape":
         """The unloaded dome."""
         from pneutouch.shape import SHAPES
 
@@ -356,7 +354,7 @@ class DesignFile(SparseTable):
         return 0.75 * self.membrane.dome.height if given is None else given
 
     @model_validator(mode="after")
-    def _depth_inside_dome(self) -> DesignFile:
+    def _depth_inside_dome(self) -> "DesignFile":
         given = self.indentation.depth_mm
         if given is not None and given > 0.95 * (height := self.membrane.dome.height):
             raise FieldsError(

@@ -3,8 +3,6 @@
 Also effects of the air on a sealed sensor at its driving pressures: of temperature, and of a fast press.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -67,7 +65,7 @@ def monte_carlo(
     row: int = 0,
     count: int = 20_000,
     seed: int = 1,
-    shift: ContactShift | None = None,
+    shift: "ContactShift | None" = None,
 ) -> SampledFigures:
     """Figures of sensor ``row`` over ``count`` samples of the sources; the same seed gives the same samples.
 
@@ -95,7 +93,7 @@ def _through_model(
     sources: Sequence[UncertaintySource],
     drawn: tuple[int, int, int],
     figure: int,
-    shift: ContactShift | None,
+    shift: "ContactShift | None",
 ) -> Array:
     """Logarithms (figures, count) of all figures over samples of those sources on inputs that count for ``figure``.
 

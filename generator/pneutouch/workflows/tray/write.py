@@ -1,7 +1,5 @@
 """Writing of a tray's folder, after the print rules: 3MF, STL, label lists, views from above and the manifest."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
@@ -58,7 +56,7 @@ def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
         return svg(drawn).encode()
 
 
-def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
+def _table(ax: "Axes", width: float, depth: float, margin: float) -> None:
     """Draw the envelope's footprint and, dashed, its free border."""
     from matplotlib.patches import Rectangle
 
@@ -72,7 +70,7 @@ def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
     ax.set_ylabel("y, mm")
 
 
-def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
+def _part(ax: "Axes", part: TrayPart, polygons: list[Any], width: float) -> None:
     """Draw one part: its resin's colour, its outline, and its label as large as fits."""
     from matplotlib.patches import PathPatch
 

@@ -1,7 +1,5 @@
 """All sources of uncertainty of n sensors of one resin and printer."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -34,8 +32,8 @@ def sources(
     errors: ModelErrors,
     numerical: Mapping[str, float],
     aged: float = 1.0,
-    calibration: SensorCalibration | None = None,
-    contact: ContactModel | None = None,
+    calibration: "SensorCalibration | None" = None,
+    contact: "ContactModel | None" = None,
     anywhere: bool = False,
 ) -> list[UncertaintySource]:
     """Sources that count for at least one figure of one of n sensors of one resin and printer.
