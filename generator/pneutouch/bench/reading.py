@@ -93,10 +93,9 @@ def read_blocks(
         cut = cut or chunk.last is not None
         progress(chunk.share)
     blocks, warnings = refreshed(replace(collector.blocks(), columns=columns), keys)
-    end = float(blocks.time[-1])
-    warnings += [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][
-        :cut
-    ]
+    if cut:
+        end, why = float(blocks.time[-1]), "last row left out: no line end, so its last number may be cut"
+        warnings.append(SuspectInterval(end, end, why, False))
     if "position" in keys:
         blocks = replace(blocks, position=blocks.position - rig.compliance_mm_per_N * blocks.force)
     if pressed:

@@ -101,7 +101,7 @@ class Window:
 
     def within(self, low: Array, high: Array) -> tuple[slice, slice]:
         """Slices of the rows and the columns inside a box with corners (x, y, ...), mm; x and y may also descend."""
-        return _span(self.y, low[1], high[1]), _span(self.x, low[0], high[0])
+        return places_within(self.y, low[1], high[1]), places_within(self.x, low[0], high[0])
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,8 @@ def _tool(shape: Shape) -> _Tool:
     return _Tool(shape, moved.min(axis=0), moved.max(axis=0), outline)
 
 
-def _span(centres: Array, low: float, high: float) -> slice:
+def places_within(centres: Array, low: float, high: float) -> slice:
+    """Places in ascending ``centres`` (n,) of those from ``low`` to ``high``; an empty slice if there are none."""
     held = np.flatnonzero((centres >= low) & (centres <= high))
     return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0, 0)
 

@@ -122,7 +122,10 @@ def revolve_rings(meridian: Meridian, tolerance: float) -> RevolvedRings:
     rings = sample(meridian, error)
     counts = [circle_count(ring.radius, error, ring.lean) for ring in rings]
     starts = [0, *itertools.accumulate(counts)][:-1]
-    vertices = np.concatenate([_ring_points(r, n) for r, n in zip(rings, counts, strict=True)])
+    levels = [
+        np.column_stack([circle_points(r.radius, n), np.full(n, r.height)]) for r, n in zip(rings, counts, strict=True)
+    ]
+    vertices = np.concatenate(levels)
     pairs = [(k, k + 1) for k in range(len(rings) - 1)]
     if meridian.is_ring:
         pairs.append((len(rings) - 1, 0))
@@ -142,10 +145,10 @@ def revolve(meridian: Meridian, tolerance: float) -> tuple[Array, Indices]:
     return made.vertices, np.concatenate(made.strips)
 
 
-def _ring_points(ring: MeridianVertex, count: int) -> Array:
+def circle_points(radius: float, count: int) -> Array:
+    """Corners (count, 2) of the regular polygon that stands for a circle around the origin, see `widen`."""
     angle = 2 * np.pi * np.arange(count) / count
-    radius = ring.radius * widen(count)
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, ring.height)])
+    return radius * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _zip(first: int, n: int, second: int, m: int) -> Indices:
@@ -281,8 +284,7 @@ class Bore:
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
         """Vertices (n, 3) and triangles (m, 3) of the drill: 1 mm longer at open ends, so that no faces coincide."""
         count = circle_count(self.radius, tolerance)
-        angle = 2 * np.pi * np.arange(count) / count
-        ring = self.radius * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)]) + [self.x, self.y]
+        ring = circle_points(self.radius, count) + np.array([self.x, self.y])
         low = self.low if self.closed == "low" else self.low - 1.0
         high = self.high if self.closed == "high" else self.high + 1.0
         vertices = np.concatenate([np.column_stack([ring, np.full(count, z)]) for z in (low, high)])

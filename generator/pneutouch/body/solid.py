@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array, Index, Indices, distinct
-from pneutouch.body.shapes import Bore, Feature, Prism, RevolvedRings, Shape, circle_count, revolve_rings, widen
+from pneutouch.body.shapes import Bore, Feature, Prism, RevolvedRings, Shape, circle_count, circle_points, revolve_rings
 from pneutouch.shape.meridian import Meridian
 from pneutouch.spec.material import Material
 from pneutouch.units import grams
@@ -226,9 +226,7 @@ def _holds(rings: RevolvedRings, k: int, bore: Bore, height: float) -> bool:
 
 
 def _circle(bore: Bore, count: int, height: float) -> Array:
-    angle = 2 * np.pi * np.arange(count) / count
-    radius = bore.radius * widen(count)
-    return np.column_stack([bore.x + radius * np.cos(angle), bore.y + radius * np.sin(angle), np.full(count, height)])
+    return np.column_stack([circle_points(bore.radius, count) + np.array([bore.x, bore.y]), np.full(count, height)])
 
 
 def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole]) -> Indices:

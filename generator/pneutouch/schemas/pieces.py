@@ -165,7 +165,8 @@ def _field(schema: Schema) -> Schema:
     """A field with its bounds (a list's on its numbers), unit and registry, without a default that JSON cannot hold."""
     low, high = schema.pop("low", None), schema.pop("high", None)
     unit, registry = schema.pop("unit", None), schema.pop("registry", None)
-    if isinstance(schema.get("default"), dict | float) and not _is_plain(schema["default"]):
+    default = schema.get("default")
+    if isinstance(default, dict) or (isinstance(default, float) and not math.isfinite(default)):
         del schema["default"]
     if low is not None and schema.get("type") == "array":
         innermost = schema["items"]
@@ -180,7 +181,3 @@ def _field(schema: Schema) -> Schema:
     if registry:
         schema["x-registry"] = registry
     return schema
-
-
-def _is_plain(default: Any) -> bool:
-    return isinstance(default, float) and math.isfinite(default)

@@ -123,7 +123,7 @@ class Answers:
         drawn = curve(evaluation.sensor, _highest(evaluation), "this design")
         design = None
         if drawn is not None:
-            design = PageLine(_drawn(drawn.driving_pressure_kPa), _drawn(drawn.sensitivity), model="atlas")
+            design = PageLine(on_page(drawn.driving_pressure_kPa), on_page(drawn.sensitivity), model="atlas")
         return answer(outside=None, prediction=prediction, curves=PageCurves(design))
 
     def intervals(self, question: Question) -> PredictedDesign:
@@ -185,9 +185,9 @@ def _banded(evaluation: Evaluation) -> PageLine | None:
     drawn = tuning(evaluation, _highest(evaluation))
     if drawn is None:
         return None
-    low, high = (None if end is None else _drawn(end) for end in (drawn.low_kPa_per_N, drawn.high_kPa_per_N))
+    low, high = (None if end is None else on_page(end) for end in (drawn.low_kPa_per_N, drawn.high_kPa_per_N))
     chosen = drawn.chosen
-    line = _drawn(chosen.driving_pressure_kPa), _drawn(chosen.sensitivity)
+    line = on_page(chosen.driving_pressure_kPa), on_page(chosen.sensitivity)
     return PageLine(*line, low, high, model="atlas")
 
 
@@ -203,12 +203,13 @@ def _resin_lines(evaluation: Evaluation) -> tuple[ResinLine, ...]:
         prediction.states,
     )
     return tuple(
-        ResinLine(_drawn(one.driving_pressure_kPa), _drawn(one.sensitivity), model=one.model, title=title)
+        ResinLine(on_page(one.driving_pressure_kPa), on_page(one.sensitivity), model=one.model, title=title)
         for title, one in resins.items()
     )
 
 
-def _drawn(values: Array) -> tuple[float, ...]:
+def on_page(values: Array) -> tuple[float, ...]:
+    """Values (n,) of a curve as the page shows them, to `_DIGITS` significant digits."""
     return tuple(rounded(values.tolist(), _DIGITS))
 
 

@@ -23,13 +23,11 @@ from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
 from pneutouch.spec.options import CalibrationOptions, option_words
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.studio.answer import on_page
 from pneutouch.studio.form import Question
 from pneutouch.units import KPA
-from pneutouch.wording import rounded
 from pneutouch.workflows.characterize.campaign import CharacterizationResult
 from pneutouch.workflows.characterize.predicted import doubtful, of_run
-
-_DIGITS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,14 +184,10 @@ def _figures(comparison: GroupComparison) -> tuple[PageFigure, ...]:
 
 def _curves(comparison: GroupComparison) -> GroupCurves:
     runs = tuple(
-        RunCurve(curve.run.sensor, curve.run.run, *map(_drawn, (curve.indentation, curve.force, curve.rise / KPA)))
+        RunCurve(curve.run.sensor, curve.run.run, *map(on_page, (curve.indentation, curve.force, curve.rise / KPA)))
         for curve in some([curve for curve in comparison.group.lined if curve.run.kind != "hand"])
     )
     return GroupCurves(runs, _predicted(comparison) if runs else None)
-
-
-def _drawn(values: Array) -> tuple[float, ...]:
-    return tuple(rounded(values.tolist(), _DIGITS))
 
 
 def _predicted(comparison: GroupComparison) -> PredictedCurve | None:
@@ -204,7 +198,7 @@ def _predicted(comparison: GroupComparison) -> PredictedCurve | None:
     force, rise_kPa = state.force[kept], state.pressure_rise[kept] / KPA
     rises = _band(comparison, SENSITIVITY_KEY, rise_kPa)
     forces = _band(comparison, STIFFNESS_KEY, force)
-    return PredictedCurve(_drawn(state.indentation[kept]), _drawn(force), _drawn(rise_kPa), *rises, *forces)
+    return PredictedCurve(on_page(state.indentation[kept]), on_page(force), on_page(rise_kPa), *rises, *forces)
 
 
 def _band(
@@ -212,7 +206,7 @@ def _band(
 ) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
     """Low and high curve (n,) of the band of a figure about the curve ``values``; (None, None) without a band."""
     ends = comparison.relative_band(figure)
-    return (None, None) if ends is None else (_drawn(ends[0] * values), _drawn(ends[1] * values))
+    return (None, None) if ends is None else (on_page(ends[0] * values), on_page(ends[1] * values))
 
 
 UNNAMED = "campaign"
@@ -340,7 +334,8 @@ def characterize_words(data: Path, question: Question | None, arguments: Mapping
     if question is not None:
         parameters.append(("design", arguments["bases"][question.base]))
         parameters += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
-    return _words("characterize", data, [*parameters, *_reading_words(arguments)], _kept(question))
+    command = _command("characterize", str(data), [*parameters, *_reading_words(arguments)])
+    return CommandWords(command=command, before=_kept(question))
 
 
 def _kept(question: Question | None) -> str:
@@ -358,9 +353,8 @@ def calibrate_words(
     if question is not None:
         parameters.append(("design", "DESIGN" if changed else arguments["bases"][question.base]))
     parameters += option_words(options if options.save else options.model_copy(update={"replace": False}))
-    return _words(
-        "calibrate", data, [*parameters, *_reading_words(arguments)], _saving(question, arguments) if changed else ""
-    )
+    command = _command("calibrate", str(data), [*parameters, *_reading_words(arguments)])
+    return CommandWords(command=command, before=_saving(question, arguments) if changed else "")
 
 
 def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
@@ -374,10 +368,6 @@ def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
 def _reading_words(arguments: Mapping[str, Any]) -> Parameters:
     stated = {"columns": (arguments.get("columns") or "").strip(), **(arguments.get("format") or {})}
     return [(name, _MARKS.get(value, str(value))) for name, value in stated.items() if value not in (None, "")]
-
-
-def _words(command: str, data: Path, parameters: Parameters, before: str) -> CommandWords:
-    return CommandWords(command=_command(command, str(data), parameters), before=before)
 
 
 def _command(command: str, given: str, parameters: Parameters) -> str:

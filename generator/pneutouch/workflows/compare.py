@@ -336,13 +336,10 @@ def write(result: CompareResult, out: Path) -> Path:
     folder = out / result.name
     check_writable(folder)
     document = plain(result.record)
+    assemblies = {sensor.label: sensor.assembly() for sensor in result.sensors if sensor.assembly is not None}
     files = {
         "comparison.json": json_bytes(versioned("comparison", document)),
-        **comparison_sheet(result.record, _parts(result)),
+        **comparison_sheet(result.record, assemblies),
     }
     write_folder(folder, with_manifest(files, result.name, {"comparison": short_digest(document)}))
     return folder
-
-
-def _parts(result: CompareResult) -> dict[str, Assembly]:
-    return {sensor.label: sensor.assembly() for sensor in result.sensors if sensor.assembly is not None}

@@ -13,7 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Singles
 from pneutouch.body import Solid
-from pneutouch.body.section import SolidSection, Window
+from pneutouch.body.section import SolidSection, Window, places_within
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.shape.dome import DomeShape
@@ -55,7 +55,7 @@ class Raster:
 
     def window(self, low: Array, high: Array) -> tuple[slice, slice, slice]:
         """Slices of layers, rows and columns whose centres lie in the box between two corners (3,), mm."""
-        x, y, z = (_held(centres, low[k], high[k]) for k, centres in enumerate((self.x, self.y, self.z)))
+        x, y, z = (places_within(centres, low[k], high[k]) for k, centres in enumerate((self.x, self.y, self.z)))
         return z, y, x
 
     def plane(self, rows: slice, columns: slice) -> Window:
@@ -85,11 +85,6 @@ def raster(
 def _grid(low: float, high: float, step: float) -> Array:
     first, last = math.floor(low / step + _ROUNDING), math.ceil(high / step - _ROUNDING)
     return np.asarray((np.arange(first, last) + 0.5) * step, np.float64)
-
-
-def _held(centres: Array, low: float, high: float) -> slice:
-    held = np.flatnonzero((centres >= low) & (centres <= high))
-    return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0, 0)
 
 
 Share = Callable[[Array, Array], Array]

@@ -247,7 +247,8 @@ class FrictionSolver:
         here, left, halved, iteration = self.hold(state), np.inf, False, 0
         while True:
             size = float(np.linalg.norm(here.residual))
-            if size <= RESIDUAL * here.scale and left <= GAIN * self._energy_scale(here):
+            energy_scale = here.state.local.energy + here.scale * self.solid.wall
+            if size <= RESIDUAL * here.scale and left <= GAIN * energy_scale:
                 return SlidingResult(here, iteration)
             if iteration >= max_iterations and not halved:
                 return NewtonFailure(f"residual {size / here.scale:.1e} after {iteration} iterations", iteration)
@@ -274,9 +275,6 @@ class FrictionSolver:
         scale = state.scale + float(np.linalg.norm(pull)) + 10.0 * term.noise / RESIDUAL
         energy = state.energy + term.energy(state.x)
         return HeldState(state, state.touch, points, term, energy, state.residual + pull, pull, scale)
-
-    def _energy_scale(self, here: HeldState) -> float:
-        return here.state.local.energy + here.scale * self.solid.wall
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:
         """Newton step (size,): which points touch, stick and slide is settled inside the linear model; where that fails

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.body.shapes import circle_count, widen
+from pneutouch.body.shapes import circle_count, circle_points
 from pneutouch.parts.specimen.faces import boundary, triangulated
 from pneutouch.parts.specimen.family import Box, Mesh
 
@@ -47,10 +47,9 @@ def plate(
     bottom_edges.append(_loop(low))
     made.wall(low, high)
     count = circle_count(0.5 * diameter, tolerance)
-    angle = 2 * np.pi * np.arange(count) / count
-    circle = 0.5 * diameter * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)])
+    rim = circle_points(0.5 * diameter, count)
     for middle in holes(block, border):
-        mouth, end = made.ring(circle + middle, top), made.ring(circle + middle, top - thickness)
+        mouth, end = made.ring(rim + middle, top), made.ring(rim + middle, top - thickness)
         edges.append(_loop(mouth)[:, ::-1])
         bottom_edges.append(_loop(end)[:, ::-1])
         made.wall(mouth, end)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.paper_sensor import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import UncertaintySource, counting
@@ -37,10 +37,6 @@ _MODULUS = "shear_modulus"
 _GENT = "Gent 1958, d ln E/dS"
 
 
-def _filled(value: float, size: int) -> Array:
-    return np.full(size, value)
-
-
 def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySource]:
     """Sources for the shear modulus of n sensors in one resin.
 
@@ -51,7 +47,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
     assert modulus is not None
     size = validated.size
     if modulus.spread is not None:
-        spread = _filled(modulus.spread / modulus.nominal, size)
+        spread = np.full(size, modulus.spread / modulus.nominal)
         origin = f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it"
         return [UncertaintySource("modulus as measured", _MODULUS, spread, "lognormal", counting(size), origin, True)]
     if modulus.source.startswith(FROM_CURVE):
@@ -70,14 +66,14 @@ def biaxial_sources(material: Material, size: int) -> list[UncertaintySource]:
         return []
     most, only = TENSION_ALONE_PERCENT[1], (FIGURES.index("limit_pressure_kPa"), FIGURES.index("apex_height_outer_mm"))
     origin = f"equibiaxial stress up to {most:g} % higher than by a law of tension alone: three published rubbers"
-    standard = _filled(np.log1p(0.01 * most) / np.sqrt(3.0), size)
+    standard = np.full(size, np.log1p(0.01 * most) / np.sqrt(3.0))
     counts = counting(size, only=only)
     return [UncertaintySource("law of tension alone", _MODULUS, standard, "log-rectangular", counts, origin, True)]
 
 
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
     """Source for the possible error of an assumed mixing curve; see `ResolvedMixingCurve.band_at`."""
-    standard = _filled(_log_rectangular(modulus.most / modulus.least), size)
+    standard = np.full(size, _log_rectangular(modulus.most / modulus.least))
     origin = (
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli "
         "are given their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken "
@@ -107,7 +103,7 @@ def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     )
     if validated.any():
         origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
-    spread = _filled(_log_rectangular(factor), validated.size)
+    spread = np.full(validated.size, _log_rectangular(factor))
     return UncertaintySource("published modulus", _MODULUS, spread, "log-rectangular", counts, origin, known)
 
 
@@ -129,7 +125,7 @@ def _between_prints(material: Material, size: int) -> UncertaintySource:
         if known and material.shore_a is not None
         else "assumed, as the seven resins of the paper's Table 1"
     )
-    standard, freedom = _filled(logarithmic_slope(shore) * spread, size), _READINGS - 1 if known else np.inf
+    standard, freedom = np.full(size, logarithmic_slope(shore) * spread), _READINGS - 1 if known else np.inf
     counts = counting(size)
     return UncertaintySource("modulus between prints", _MODULUS, standard, "lognormal", counts, origin, known, freedom)
 
@@ -164,7 +160,7 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
     origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
     )
-    standard, counts = _filled(abs(change) / np.sqrt(3.0), size), counting(size, without=(SENSITIVITY,))
+    standard, counts = np.full(size, abs(change) / np.sqrt(3.0)), counting(size, without=(SENSITIVITY,))
     return UncertaintySource(AGEING[1], _MODULUS, standard, "log-rectangular", counts, origin, known)
 
 
@@ -177,5 +173,5 @@ def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
         else given.source
     )
     origin = f"sensitivity {change:.1%} off after a year: {origin}"
-    standard, counts = _filled(change / np.sqrt(3.0), size), counting(size, only=(SENSITIVITY,))
+    standard, counts = np.full(size, change / np.sqrt(3.0)), counting(size, only=(SENSITIVITY,))
     return UncertaintySource(AGEING[0], "figure", standard, "rectangular", counts, origin, given is not None)
