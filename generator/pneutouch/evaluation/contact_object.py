@@ -3,8 +3,6 @@
 Notes on the uncertainty of a sensor under a contact other than a plate without friction.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
@@ -35,7 +33,7 @@ _POINTS = 2001
 """Number of points of the unloaded dome among which first touch is sought."""
 
 
-def rigid_base(assembly: Assembly) -> RigidBase | None:
+def rigid_base(assembly: "Assembly") -> RigidBase | None:
     """Base that the wall of a design can lie down on, from the connector's faces; None if it passes through."""
     layout, seat = assembly.layout, assembly.scene.seat
     if not assembly.scene.design.contact.base:
@@ -45,7 +43,7 @@ def rigid_base(assembly: Assembly) -> RigidBase | None:
     return RigidBase(layout.channel_radius)
 
 
-def contact_object(scene: ResolvedDesign) -> RigidObject | None:
+def contact_object(scene: ResolvedDesign) -> "RigidObject | None":
     """The object of a design in mm; None for a plate. Raises InputError for a profile that is no underside."""
     contact = scene.design.contact
     if contact.is_plate:
@@ -142,7 +140,7 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
         )
 
 
-def at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
+def at_rest(body: "RigidObject", sensor: Sensor) -> tuple[float, float]:
     """Height of the object at first contact with the unloaded dome, and distance of that contact from the object's
     axis, mm."""
     # An object off the axis touches first on its side of the plane of symmetry.
@@ -185,7 +183,7 @@ def check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
             )
 
 
-def contact_notes(sensor: Sensor, contact: ContactModel | None) -> tuple[str, ...]:
+def contact_notes(sensor: Sensor, contact: "ContactModel | None") -> tuple[str, ...]:
     """Notes on the uncertainty under a contact; empty if ``contact`` is None, for a plate without friction."""
     if contact is None:
         return ()

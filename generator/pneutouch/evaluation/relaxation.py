@@ -1,7 +1,5 @@
 """Relaxation, hysteresis and ageing of a predicted sensor, as a datasheet shows them."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +20,7 @@ _DIGITS = 6
 # The runs are followed on the atlas or by the solid, which a prediction by the membrane model must not load.
 
 
-def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Sensor) -> ViscousRuns | str:
+def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Sensor) -> "ViscousRuns | str":
     """The runs of every state of a prediction, or the reason why there are none."""
     why = unknown(sensor, material, prediction.model)
     if why is not None:
@@ -37,7 +35,7 @@ def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Senso
     return describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
 
 
-def viscous(runs: ViscousRuns | str) -> Viscous:
+def viscous(runs: "ViscousRuns | str") -> Viscous:
     """Record of relaxation and hysteresis of every state by every source of data, or of why there is none."""
     if isinstance(runs, str):
         return Viscous(unknown=runs)
@@ -53,18 +51,18 @@ def viscous(runs: ViscousRuns | str) -> Viscous:
     return rounded(record, _DIGITS)
 
 
-def _by_source(runs: ViscousRuns, i: int, j: int) -> BySource:
+def _by_source(runs: "ViscousRuns", i: int, j: int) -> BySource:
     return BySource(_hold(runs.held[i][j]), tuple(_pressed(speed, of[i][j]) for speed, of in runs.loops.items()))
 
 
-def _hold(run: RelaxationRun) -> Hold:
+def _hold(run: "RelaxationRun") -> Hold:
     if run.ended is not None:
         return Hold(ended=run.ended)
     (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
     return Hold(100 * force, 100 * force_decade, 100 * rise, 100 * rise_decade, 1.0, float(np.round(run.times[-1], 9)))
 
 
-def _pressed(speed: float, run: LoopRun) -> Loop:
+def _pressed(speed: float, run: "LoopRun") -> Loop:
     hysteresis = run.hysteresis()
     if hysteresis is None:
         return Loop(speed_mm_per_s=speed, ended=run.ended)

@@ -3,8 +3,6 @@
 Also the results for a sensor in a mix of resins by one of the pair's mixing curves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -132,8 +130,8 @@ class SensorState:
     max_von_mises: Array | None = None
     shapes: tuple[DeformedShape, ...] = ()
     walls: WallPath | None = None
-    beyond_axis: OffAxisCurve | None = None
-    face: Callable[[], PressedFace] | None = None
+    beyond_axis: "OffAxisCurve | None" = None
+    face: "Callable[[], PressedFace] | None" = None
     held: Held | None = None
 
     def __repr__(self) -> str:
@@ -144,7 +142,7 @@ class SensorState:
         """Events to warn of, see `WARNED`."""
         return tuple(event for event in self.events if event.kind in WARNED)
 
-    def judged(self) -> SensorState:
+    def judged(self) -> "SensorState":
         """The state, without figures and with an event that gives the reason if its curve falls or is no line."""
         f = self.figures
         if f is None or (f.sensitivity > 0.0 and f.r_squared >= STRAIGHT):
@@ -155,7 +153,7 @@ class SensorState:
         event = Event(NO_LINE, self.range_end, False, f"{why}, so no sensitivity, stiffness or force range is given")
         return replace(self, figures=None, events=(*self.events, event))
 
-    def corrected(self, correction: ResponseCorrection) -> SensorState:
+    def corrected(self, correction: ResponseCorrection) -> "SensorState":
         """The state with force and rise times the correction's factors; events and range end are unchanged."""
         by_force, by_rise = correction.at(self.driving_pressure)
         if by_force == by_rise == 1.0:
@@ -169,7 +167,7 @@ class SensorState:
             face=None if self.face is None else partial(self._scaled_face, by_force),
         )
 
-    def _scaled_face(self, by_force: float) -> PressedFace:
+    def _scaled_face(self, by_force: float) -> "PressedFace":
         assert self.face is not None
         return self.face().scaled(by_force)
 

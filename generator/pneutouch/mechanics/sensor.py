@@ -1,7 +1,5 @@
 """Records of a sensor, the input of the mechanics, in mm, N and MPa; they know no files and no printers."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -126,7 +124,7 @@ class IndentationProtocol:
     depth: float
     steps: int
     waves: int = 0
-    body: RigidObject | None = None
+    body: "RigidObject | None" = None
     plate_rim: float | None = None
     friction: float = 0.0
     offset: float = 0.0
@@ -193,7 +191,7 @@ class Sensor:
     protocol: IndentationProtocol
     correction: ResponseCorrection = ResponseCorrection()
 
-    def replace(self, **changes: Any) -> Sensor:
+    def replace(self, **changes: Any) -> "Sensor":
         """The sensor with changed fields of its parts and shape, such as ``replace(depth=5.0, steps=10)``.
 
         Raises TypeError for a name that is not a field of any part.
@@ -208,12 +206,12 @@ class Sensor:
         return dataclasses.replace(self, **{**parts, **changes})
 
     @property
-    def even(self) -> Sensor:
+    def even(self) -> "Sensor":
         """The sensor as the atlas takes it: its mean modulus everywhere, the neo-Hookean wall for a fitted law."""
         even = self if self.wall.grade is None else self.replace(grade=None)
         return even.replace(law=None) if self.wall.fitted else even
 
-    def of_modulus(self, shear_modulus: float) -> Sensor:
+    def of_modulus(self, shear_modulus: float) -> "Sensor":
         """The sensor with another shear modulus (MPa); the stresses of a law change in the same proportion."""
         law = self.wall.law
         if law is not None:

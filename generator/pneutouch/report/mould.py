@@ -1,7 +1,5 @@
 """The closed mould as a drawing: the section through the axis of one cavity, as it is poured, with labels."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -46,7 +44,7 @@ def mould_section(mould: MouldAssembly) -> str:
         return svg(drawn)
 
 
-def draw_mould(ax: Axes, mould: MouldAssembly, labels: bool = True) -> None:
+def draw_mould(ax: "Axes", mould: MouldAssembly, labels: bool = True) -> None:
     """Draw the section of one cavity into axes, turned over, with heights as it is poured; lengths in mm."""
     size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1), mould.size.insert)
     insert = () if mould.insert is None else (mould.insert,)
@@ -104,20 +102,20 @@ def _fastening(mould: MouldAssembly) -> str:
     return f"{len(screw_places(size))} screws {SCREW.name}, at most {length:.0f} mm long, cut into the plastic"
 
 
-def _fill(ax: Axes, solid: Solid) -> None:
+def _fill(ax: "Axes", solid: Solid) -> None:
     """Draw the section of a part turned over, at heights -z: silicone in gray, printed parts and ring hatched."""
     loops = [loop * np.array([1.0, -1.0]) for loop in section_outline(solid, _TOLERANCE)]
     draw_loops(ax, loops, solid.name, _HATCHES)
 
 
-def _holes(ax: Axes, ring: RingSize) -> None:
+def _holes(ax: "Axes", ring: RingSize) -> None:
     """Draw the holes of the ring, turned into the plane of the section and full of silicone."""
     z = -np.array([ring.web_low, ring.web_low, ring.web_high, ring.web_high])
     for x in (-ring.hole_circle, ring.hole_circle):
         ax.fill(x + ring.hole_radius * np.array([-1.0, 1.0, 1.0, -1.0]), z, facecolor=GRAY, edgecolor=INK, lw=THIN)
 
 
-def _labels(ax: Axes, size: MouldSize) -> None:
+def _labels(ax: "Axes", size: MouldSize) -> None:
     """Draw the names of the parts and of the silicone's passages, from the top down on both sides."""
     shape, wide = size.shape, 0.5 * size.pitch + size.margin
     low, high, foot = -size.cap_high, -size.base_low, -size.foot_low

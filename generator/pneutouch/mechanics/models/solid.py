@@ -3,8 +3,6 @@
 A wall stretched beyond the range over which its law was fitted is a limit of the inflation and an event of the press.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -309,7 +307,7 @@ def free_figures(free: FreeState) -> tuple[float, float, float]:
     return free.inner_apex, free.outer_apex, free.volume
 
 
-def pressed_columns(pressed: IndentationPath | OffAxisPath) -> tuple[Array, Array, Array, Array, Array]:
+def pressed_columns(pressed: "IndentationPath | OffAxisPath") -> tuple[Array, Array, Array, Array, Array]:
     """Indentation, force, pressure rise, contact radius and greatest stretch of a press, as in `SensorState`."""
     column = pressed.column
     return column("indentation"), column("force"), column("rise"), column("contact_radius"), column("stretch")
@@ -321,7 +319,7 @@ def reported_events(events: list[SolidEvent]) -> list[Event]:
     return sorted(reported, key=lambda event: event.indentation)
 
 
-def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Array) -> tuple[Array, Array]:
+def curve_between(path: "Sequence[PressState] | Sequence[OffAxisState]", grid: Array) -> tuple[Array, Array]:
     """Force (N) and pressure rise (MPa) at indentations ``grid`` (n,; mm), on Hermite cubics through solved states."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
@@ -334,7 +332,7 @@ def curve_between(path: Sequence[PressState] | Sequence[OffAxisState], grid: Arr
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> PressedFace:
+def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> "PressedFace":
     """Pressed outer wall for drawing, at positions (n_nodes, 2), mm, under an object that is given at first contact and
     lowered by an indentation (mm)."""
     # To draw in space, the wall is enough: nothing is solved here.
@@ -371,6 +369,6 @@ def _walls(mesh: SolidMesh, pressed: IndentationPath, section: _Section) -> Wall
     )
 
 
-def _section(body: RigidObject | None, start: float, length: float, at: float | None) -> Array | None:
+def _section(body: "RigidObject | None", start: float, length: float, at: float | None) -> Array | None:
     """Section of a ``body`` at an indentation, from its height at first contact over ``length``; None for a plate."""
     return None if body is None or at is None else body.at(start * length - at).outline(_DRAWN * length)

@@ -5,8 +5,6 @@ Also the derivatives of the figures of many sensors by their inputs, local and o
 Also the uncertainty of the limit pressure alone, without a press, so that thousands of candidates cost little.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
@@ -62,13 +60,13 @@ class Derivatives:
     slopes: Array
     one_sided: Flags
 
-    def part(self, rows: slice) -> Derivatives:
+    def part(self, rows: slice) -> "Derivatives":
         """Derivatives for the sensors of a slice."""
         return Derivatives(*(getattr(self, each.name)[..., rows] for each in fields(self)))
 
 
 def derivatives(
-    batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP, shift: ContactShift | None = None
+    batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP, shift: "ContactShift | None" = None
 ) -> Derivatives:
     """Derivatives of the figures of n sensors by a small step in every input, and over its spread.
 
@@ -164,7 +162,7 @@ class Budget:
     variances: Array
     linear: Array
     freedom: Array
-    shift: ContactShift | None = None
+    shift: "ContactShift | None" = None
 
     @property
     def values(self) -> Array:
@@ -206,7 +204,7 @@ class Budget:
         return np.asarray(self.derivatives.one_sided.any(axis=0))
 
 
-def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: ContactModel | None = None) -> Budget:
+def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: "ContactModel | None" = None) -> Budget:
     """Budget of n sensors from their sources, by the atlas; the sources are taken as mutually independent.
 
     Correlated inputs belong to one joint source. ``contact`` None: a frictionless plate.
@@ -232,7 +230,7 @@ def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]
     ]
 
 
-def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: ContactShift | None) -> Budget:
+def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: "ContactShift | None") -> Budget:
     by_source = variances(sources, slopes_of.slopes)
     linear = np.sqrt(variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])
