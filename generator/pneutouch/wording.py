@@ -38,6 +38,11 @@ def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
     return cast("_Json", result)
 
 
+def finite(value: float) -> float | None:
+    """The number, or None, which JSON can hold, in place of NaN or infinity."""
+    return float(value) if math.isfinite(value) else None
+
+
 def tenths_below(value: float) -> float:
     """A value rounded down to a tenth, so that no rated pressure is shown above the true one (but for 1e-10)."""
     return math.floor(10.0 * value + _ROUNDING) / 10.0

@@ -24,7 +24,7 @@ from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
 from pneutouch.results.behaviour import ContactAnywhere, ContactErrors, ContactPlace
 from pneutouch.spec.contact import ContactKind
 from pneutouch.units import KPA
-from pneutouch.wording import rounded
+from pneutouch.wording import finite, rounded
 
 _READINGS = (1.0 / 3.0, 2.0 / 3.0)
 """Shares of the range's travel whose readings are tabulated; the first is drawn."""
@@ -138,7 +138,7 @@ def _round_rows(
 
 
 def _numbers(errors: Array) -> tuple[tuple[float | None, ...], ...]:
-    return tuple(tuple(float(e) if np.isfinite(e) else None for e in row) for row in errors)
+    return tuple(tuple(finite(e) for e in row) for row in errors)
 
 
 def _at_travels(

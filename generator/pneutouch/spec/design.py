@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.fields import EntryError, FieldsError, OneOf, SparseTable, Table, declaration, name, number, numbers
+from pneutouch.spec.fields import FieldsError, OneOf, SparseTable, Table, declaration, list_check, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.spec.part import PerforatedRing
 
@@ -51,17 +51,8 @@ class Mould(Table):
 
 
 def _within(low: float, high: float, unit: str) -> AfterValidator:
-    def check(values: list[float] | None) -> list[float] | None:
-        if values is None:
-            return None
-        for index, value in enumerate(values):
-            if not low <= value <= high:
-                raise EntryError(f"must be from {low:g} to {high:g} {unit}", index, value)
-            if value in values[:index]:
-                raise EntryError("every entry may appear once only", index, value)
-        return sorted(values)
-
-    return AfterValidator(check)
+    check = list_check(low, high, unit)
+    return AfterValidator(lambda values: None if values is None else sorted(check(values)))
 
 
 def _printable(text: str) -> str:

@@ -92,6 +92,22 @@ class EntryError(ValueError):
         self.index, self.value = index, value
 
 
+def list_check(
+    low: float, high: float, unit: str, *, once: bool = True, ends: bool = True
+) -> Callable[[list[Any]], list[Any]]:
+    """Check of a list: numbers from ``low`` to ``high``, ``ends`` included or not; no entry twice if ``once``."""
+
+    def check(values: list[Any]) -> list[Any]:
+        for index, value in enumerate(values):
+            if not isinstance(value, str) and not (low <= value <= high if ends else low < value < high):
+                raise EntryError(f"must be from {low:g} to {high:g} {unit}".rstrip(), index, value)
+            if once and value in values[:index]:
+                raise EntryError("every entry may appear once only", index, value)
+        return values
+
+    return check
+
+
 def number(default: float | None, *, unit: str, low: float, high: float, help: str) -> Any:
     """Declare a number in ``unit``, from ``low`` to ``high`` inclusive; a default of None makes it optional."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}

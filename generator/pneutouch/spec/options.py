@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, JsonValue, model_va
 from pydantic_core import PydanticUndefined
 
 from pneutouch.spec.campaign import PlannedKind
-from pneutouch.spec.fields import EntryError, FieldsError, Table, extra_of
+from pneutouch.spec.fields import FieldsError, Table, extra_of, list_check
 from pneutouch.spec.read import validate
 
 SPEEDS_MM_PER_S = (0.01, 1000.0)
@@ -68,20 +68,6 @@ def option(
     )
 
 
-def _each(low: float, high: float, unit: str, *, once: bool = True, ends: bool = True) -> AfterValidator:
-    """Check of a list: numbers from ``low`` to ``high``, ``ends`` included or not; no entry twice if ``once``."""
-
-    def check(values: list[Any]) -> list[Any]:
-        for index, value in enumerate(values):
-            if not isinstance(value, str) and not (low <= value <= high if ends else low < value < high):
-                raise EntryError(f"must be from {low:g} to {high:g} {unit}".rstrip(), index, value)
-            if once and value in values[:index]:
-                raise EntryError("every entry may appear once only", index, value)
-        return values
-
-    return AfterValidator(check)
-
-
 def _some(values: list[Any]) -> list[Any]:
     if not values:
         raise ValueError("must name at least one")
@@ -89,11 +75,11 @@ def _some(values: list[Any]) -> list[Any]:
 
 
 _AT_LEAST_ONE = AfterValidator(_some)
-_PRESSURES = _each(0.0, 1000.0, "kPa")
-_AGES = _each(0.0, 36_500.0, "days")
-_ONCE = _each(0.0, 0.0, "")
-_READINGS = _each(0.0, 100.0, "", once=False, ends=False)
-_PUCK = _each(0.05, 1000.0, "mm", once=False)
+_PRESSURES = AfterValidator(list_check(0.0, 1000.0, "kPa"))
+_AGES = AfterValidator(list_check(0.0, 36_500.0, "days"))
+_ONCE = AfterValidator(list_check(0.0, 0.0, ""))
+_READINGS = AfterValidator(list_check(0.0, 100.0, "", once=False, ends=False))
+_PUCK = AfterValidator(list_check(0.05, 1000.0, "mm", once=False))
 FilePath = Annotated[Path, BeforeValidator(lambda value: Path(value) if isinstance(value, str) else value)]
 """Path of a file, which may be given as text."""
 

@@ -52,6 +52,7 @@ from pneutouch.results.calibration import (
 )
 from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
 from pneutouch.units import KPA, ML
+from pneutouch.wording import finite
 
 
 def _estimate(fitted: CalibrationFit, place: int) -> EstimateRecord:
@@ -78,7 +79,7 @@ def _estimate(fitted: CalibrationFit, place: int) -> EstimateRecord:
 def _correlation(fitted: CalibrationFit) -> CorrelationRecord:
     spread = np.sqrt(np.diag(fitted.covariance.matrix))
     scaled = fitted.covariance.matrix / np.outer(spread, spread)
-    return CorrelationRecord(fitted.parameters.names, tuple(tuple(_number(x) for x in row) for row in scaled))
+    return CorrelationRecord(fitted.parameters.names, tuple(tuple(finite(x) for x in row) for row in scaled))
 
 
 def _goodness(fitted: CalibrationFit) -> GoodnessRecord:
@@ -119,11 +120,7 @@ def _correlated(group: CorrelatedParameters) -> CorrelatedRecord:
 
 def _leaving(k: int, deviation: float) -> float | None:
     """Deviation in the unit of records: relative for logarithms, mL, mm, or 1; None if it is not finite."""
-    return _number(float(deviation) / (ML if k == DEAD else 1.0))
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+    return finite(float(deviation) / (ML if k == DEAD else 1.0))
 
 
 FITTED_KINDS: tuple[RunKind, ...] = ("steps", "injection")
@@ -195,7 +192,7 @@ class Calibration:
             fit=_goodness(self.fit),
             response=_response(self.gap),
             residuals=tuple(
-                ResidualRecord(run.label, *map(_number, (run.driving_pressure_kPa, run.force_error, run.rise_error)))
+                ResidualRecord(run.label, *map(finite, (run.driving_pressure_kPa, run.force_error, run.rise_error)))
                 for run in self.residuals
             ),
             misses=tuple(self.misses),

@@ -32,7 +32,7 @@ from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA, ML
-from pneutouch.wording import counted, tenths_below
+from pneutouch.wording import counted, finite, tenths_below
 from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
@@ -136,8 +136,8 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         footprint_mm=selection.footprint(choice),
         dead_volume_mL=float(batch.dead_volume[0]) / ML,
         sensitivity_kPa_per_N=figures.sensitivity,
-        expanded_uncertainty_kPa_per_N=_known(figures.sensitivity * choice.expanded),
-        expanded_uncertainty_relative=_known(choice.expanded),
+        expanded_uncertainty_kPa_per_N=finite(figures.sensitivity * choice.expanded),
+        expanded_uncertainty_relative=finite(choice.expanded),
         coverage_factor=2,
         place_uncertainty_relative=choice.place if selection.problem.anywhere else None,
         r_squared=figures.r_squared,
@@ -145,24 +145,20 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         range_end_mm=float(pool.response.range_end[0]),
         range_ends_with=choice.ends_with,
         stiffness_N_per_mm=figures.stiffness,
-        stiffness_at_1mm_N_per_mm=_known(figures.stiffness_1mm),
-        stiffness_at_3mm_N_per_mm=_known(figures.stiffness_3mm),
+        stiffness_at_1mm_N_per_mm=finite(figures.stiffness_1mm),
+        stiffness_at_3mm_N_per_mm=finite(figures.stiffness_3mm),
         limit_point_kPa=float(pool.response.limit_pressure[0]) / KPA,
         rated_pressure_kPa=choice.rated / KPA,
         above_rated_pressure=choice.margins["rated pressure"] < 0,
-        sensitivity_at_0kPa_and_rated_kPa_per_N=tuple(_known(end) for end in choice.span),
-        margins={name: _known(margin) for name, margin in choice.margins.items()},
+        sensitivity_at_0kPa_and_rated_kPa_per_N=tuple(finite(end) for end in choice.span),
+        margins={name: finite(margin) for name, margin in choice.margins.items()},
         binding=choice.binding,
         model="atlas" if by_solid is None else "solid",
         plate_sensitivity_kPa_per_N=None if by_solid is None else by_solid.plate_kPa_per_N,
         rounds=None if by_solid is None else by_solid.rounds,
-        solid=None if solid is None else SolidCheck(_known(solid.sensitivity), solid.within),
+        solid=None if solid is None else SolidCheck(finite(solid.sensitivity), solid.within),
         set=tuple(selection.assignments(choice)),
     )
-
-
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
@@ -339,9 +335,9 @@ def graded(selection: GradedSelectionRun) -> GradedRecord:
 def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> GradeFigures:
     return GradeFigures(
         driving_pressures_kPa=tuple(p / KPA for p in selection.grade_target.pressures),
-        sensitivity_kPa_per_N=tuple(map(_known, trial.sensitivity)),
-        difference_percent=_known(100 * trial.difference),
-        force_range_end_N=tuple(map(_known, trial.force)),
+        sensitivity_kPa_per_N=tuple(map(finite, trial.sensitivity)),
+        difference_percent=finite(100 * trial.difference),
+        force_range_end_N=tuple(map(finite, trial.force)),
         range_ends_with=tuple(trial.ends),
         rated_pressure_kPa=None if trial.note else trial.rated / KPA,
         above_rated_pressure=max(selection.grade_target.pressures) > trial.rated,
