@@ -247,17 +247,14 @@ class _Closure:
     apex: Array
     height: Array
 
-    @property
-    def wall_volume(self) -> float:
-        return 2 * np.pi * self.sensor.dome.inner_radius**2 * self.sensor.dome.wall_thickness
-
     def cap(self, rho: Array) -> PressedCap:
         return pressed_cap(rho, self.height, self.sensor.dome.inner_radius)
 
     def wall_slope(self, cap: PressedCap, reference_area: Array | float) -> Array:
         """Derivative of the wall's energy by the membrane's area, N/mm."""
         stretch = reference_area / cap.area
-        return -self.wall_volume * energy_slope(self.sensor.wall.shear_modulus, stretch) * stretch / cap.area
+        wall_volume = 2 * np.pi * self.sensor.dome.inner_radius**2 * self.sensor.dome.wall_thickness
+        return -wall_volume * energy_slope(self.sensor.wall.shear_modulus, stretch) * stretch / cap.area
 
 
 class VariationalClosure(_Closure):

@@ -1,7 +1,5 @@
 """A chart as a record, and the one function that draws it: curves, points, bands and notes in one or more panels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -139,7 +137,7 @@ def drawn_svg(chart: Chart | Panel) -> str:
 
 
 @contextmanager
-def chart_figure(chart: Chart) -> Iterator[Figure]:
+def chart_figure(chart: Chart) -> "Iterator[Figure]":
     """The chart as a matplotlib figure, to be saved inside the ``with`` block."""
     down, count = -(-len(chart.panels) // chart.across), len(chart.panels)
     shared: dict[str, Any] = {f"share{axis}": True for axis in chart.shared}
@@ -157,7 +155,7 @@ def chart_figure(chart: Chart) -> Iterator[Figure]:
         yield drawn
 
 
-def draw_panel(ax: Axes, panel: Panel) -> None:
+def draw_panel(ax: "Axes", panel: Panel) -> None:
     """Draw a panel into axes; its legend is left to the caller."""
     for span in panel.spans:
         _shade(ax, span)
@@ -185,7 +183,7 @@ def draw_panel(ax: Axes, panel: Panel) -> None:
         note(ax, plain_text(one.text), one.at, one.side, color=one.tone, **(BOLD if one.bold else {}))
 
 
-def _draw(ax: Axes, one: PlotLine) -> None:
+def _draw(ax: "Axes", one: PlotLine) -> None:
     """Draw a curve with its band."""
     label = plain_text(one.label) or None
     if one.low is not None and one.high is not None:
@@ -224,7 +222,7 @@ def _draw(ax: Axes, one: PlotLine) -> None:
         drawn.set_in_layout(len(one.x) > 0)
 
 
-def _shade(ax: Axes, span: Span) -> None:
+def _shade(ax: "Axes", span: Span) -> None:
     draw = ax.axvspan if span.axis == "x" else ax.axhspan
     look: dict[str, Any] = {"color": span.tone, "alpha": 0.35, "lw": 0}
     if span.hatched:
@@ -232,7 +230,7 @@ def _shade(ax: Axes, span: Span) -> None:
     draw(span.low, span.high, label=span.label or None, zorder=0.5, **look)
 
 
-def _ticks(ax: Axes, panel: Panel) -> None:
+def _ticks(ax: "Axes", panel: Panel) -> None:
     """Set the numbers or names along the axes."""
     if panel.ticks:
         ax.set_xticks(panel.ticks)

@@ -1,7 +1,5 @@
 """The dimensioned drawing: a section and a plan view, lengths in mm with the printers' tolerances."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING
 
@@ -60,7 +58,7 @@ _WIDE, _NARROW = 112.0, 68.0
 class _Section:
     """The section drawing with its dimensions; ``unit`` is the step, mm, by which they are spaced."""
 
-    def __init__(self, ax: Axes, assembly: Assembly) -> None:
+    def __init__(self, ax: "Axes", assembly: Assembly) -> None:
         layout, mount = assembly.layout, assembly.scene.mount
         self.ax, self.assembly, self.layout = ax, assembly, layout
         sleeve = mount.sleeve_length if isinstance(mount, Sleeve) else 0.0
@@ -183,7 +181,7 @@ def _screw_radius(scene: ResolvedDesign, mount: Sleeve) -> float:
     return 0.5 * (mount.set_screw_core_diameter + scene.hole_undersize)
 
 
-def _plan(ax: Axes, assembly: Assembly) -> None:
+def _plan(ax: "Axes", assembly: Assembly) -> None:
     layout, scene = assembly.layout, assembly.scene
     unit = layout.plate_radius / 22
     held = dict.fromkeys([layout.held_radius, layout.flange_radius])
@@ -211,7 +209,7 @@ def _plan(ax: Axes, assembly: Assembly) -> None:
     _finish(ax, "View from above", (-reach - 3 * unit, far + 3 * unit), (-reach - 3 * unit, reach + 5 * unit))
 
 
-def _side_port(ax: Axes, assembly: Assembly) -> None:
+def _side_port(ax: "Axes", assembly: Assembly) -> None:
     """Draw the outline of a port in the side as seen from above."""
     layout = assembly.layout
     points = [layout.port.hollow[0], *(point for point, _ in layout.port.outside)]
@@ -221,7 +219,7 @@ def _side_port(ax: Axes, assembly: Assembly) -> None:
     ax.plot([xs[0], xs[0]], [-points[0][0], points[0][0]], color="black", lw=0.7)
 
 
-def _holes(ax: Axes, assembly: Assembly, unit: float) -> None:
+def _holes(ax: "Axes", assembly: Assembly, unit: float) -> None:
     """Draw the notes on the mounting holes; for a sleeve the hidden edges of its holes for set screws."""
     layout, scene = assembly.layout, assembly.scene
     mount, rigid = scene.mount, scene.connector_printer.accuracy_mm.nominal
@@ -251,7 +249,7 @@ def _holes(ax: Axes, assembly: Assembly, unit: float) -> None:
     leader(ax, polar(layout.bolt_circle_radius, 209), low, f"bolt circle Ø{2 * layout.bolt_circle_radius:g}", "left")
 
 
-def _finish(ax: Axes, title: str, xs: tuple[float, float], ys: tuple[float, float]) -> None:
+def _finish(ax: "Axes", title: str, xs: tuple[float, float], ys: tuple[float, float]) -> None:
     ax.set_aspect("equal")
     ax.set_xlim(*xs)
     ax.set_ylim(*ys)
