@@ -1,12 +1,14 @@
-"""Array types for annotations, distinct values, roots by bisection, and cubics through values and slopes (Hermite)."""
+"""Array types, distinct and grouped values, roots by bisection, and cubics through values and slopes (Hermite)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterable
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Scalar = TypeVar("Scalar", bound=np.generic)
+SharedKey = TypeVar("SharedKey", bound=Hashable)
+Grouped = TypeVar("Grouped")
 
 Array = NDArray[np.float64]
 """Real numbers in double precision."""
@@ -31,6 +33,14 @@ Labels = NDArray[np.uint8]
 
 Pixels = NDArray[np.uint32]
 """Packed RGBA colours."""
+
+
+def grouped(pairs: Iterable[tuple[SharedKey, Grouped]]) -> dict[SharedKey, list[Grouped]]:
+    """The values of pairs (key, value) by key, both in the order in which they come."""
+    groups: dict[SharedKey, list[Grouped]] = {}
+    for key, value in pairs:
+        groups.setdefault(key, []).append(value)
+    return groups
 
 
 def distinct(values: NDArray[Scalar]) -> NDArray[Scalar]:

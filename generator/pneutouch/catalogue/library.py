@@ -275,10 +275,7 @@ Resins = dict[str, Material]
 
 
 def elastomers(library: Library, casting: bool = False) -> Resins:
-    """Every printed elastomer of a library by name; with ``casting`` also those that are cast.
-
-    A cast design needs both: the paper measured only printed ones, from which the model's error is taken.
-    """
+    """Every printed elastomer of a library by name; with ``casting`` also those that are cast."""
     materials = library.all("materials", Material)
     soft = {name: material for name, material in materials.items() if material.kind == "elastomer"}
     return {name: material for name, material in soft.items() if casting or not material.is_cast}

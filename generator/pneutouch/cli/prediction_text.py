@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from pneutouch.arrays import grouped
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import WARNED
 from pneutouch.results.record import SENSITIVITY_KEY
@@ -185,12 +186,12 @@ def _range_end(state: StateRecord) -> str:
 
 def _warned(prediction: PredictionRecord) -> list[str]:
     """Events to warn of, one line a kind with the travels at which it begins."""
-    places: dict[tuple[str, str], list[str]] = {}
-    for state in (*prediction.states, *prediction.filled):
-        for event in state.events:
-            if event.kind in WARNED:
-                place = f"{event.indentation_mm:.2f} mm at {state.driving_pressure_kPa:.4g} kPa"
-                places.setdefault((event.kind, event.message), []).append(place)
+    places = grouped(
+        ((event.kind, event.message), f"{event.indentation_mm:.2f} mm at {state.driving_pressure_kPa:.4g} kPa")
+        for state in (*prediction.states, *prediction.filled)
+        for event in state.events
+        if event.kind in WARNED
+    )
     return [f"warning: {kind} from {', '.join(found)}: {words}" for (kind, words), found in places.items()]
 
 

@@ -328,7 +328,6 @@ def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProble
 def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
     return tuple(
         CandidateResin.of(name, material)
-        for name, material in evaluation.resins.items()
-        if evaluation.scene.printer.mode_for(material) is not None
-        and outside("atlas", in_resin(under_plate(evaluation.sensor), material)) is None
+        for name, material in evaluation.alike.items()
+        if outside("atlas", in_resin(under_plate(evaluation.sensor), material)) is None
     )

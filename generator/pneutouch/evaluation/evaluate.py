@@ -77,8 +77,7 @@ class Evaluation:
     @property
     def alike(self) -> Resins:
         """Those of `resins` that the membrane's printer, or the casting profile, makes."""
-        makes = self.scene.printer.mode_for
-        return {name: one for name, one in self.resins.items() if makes(one) is not None}
+        return {name: one for name, one in self.resins.items() if self.scene.printer.mode_for(one) is not None}
 
     @cached_property
     def findings(self) -> list[Finding]:

@@ -39,10 +39,8 @@ def _estimate(job: PrintJob) -> JobEstimate:
         return _cast(job)
     layers = math.ceil(z / (UM * first.mode.layer_um) - 1e-9)
     support, how = _support(job)
-    swaths = None
-    if job.printer.process == "polyjet":
-        swath = job.printer.swath_mm
-        swaths = None if swath is None else math.ceil(min(x, y) / swath.nominal)
+    swath = job.printer.swath_mm if job.printer.process == "polyjet" else None
+    swaths = None if swath is None else math.ceil(min(x, y) / swath.nominal)
     seconds, reasons = _seconds(job, layers, swaths, support)
     items = tuple(_item(part) for part in job.parts)
     notes = [how, _PURGE, *reasons]
@@ -53,10 +51,9 @@ def _estimate(job: PrintJob) -> JobEstimate:
 
 def _cast(job: PrintJob) -> JobEstimate:
     """Estimate of a casting: the body alone, and the time of its cure; mould, overflow and loss come on top."""
-    first = job.parts[0].item
     items, seconds = tuple(_item(part) for part in job.parts), None
     notes = ["silicone: the body alone; what stays in sprue, vents and cup comes on top"]
-    casting = first.body.material.casting
+    casting = job.parts[0].item.body.material.casting
     if casting is not None:
         seconds = 3600 * casting.cure_h.nominal
         notes.append(f"time: cure at room temperature ({casting.cure_h.source}); printing the mould comes on top")
@@ -91,16 +88,13 @@ def _job(
 
 
 def _item(part: PrintPart) -> ItemEstimate:
-    body, solid = part.item.body, part.item.solid
-    volume, corners = body.volume if solid is None else float(solid.volume), body.vertices[body.triangles]
-    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    shell = min(volume, 0.5 * _OUTLINES * float(np.linalg.norm(sides, axis=1).sum()))
-    flow = 1.0 if body.material.making is None else float(body.material.making.slicer.get("extrusion_multiplier", 1.0))
+    body, solid, material = part.item.body, part.item.solid, part.item.body.material
+    volume = body.volume if solid is None else float(solid.volume)
+    shell = min(volume, _OUTLINES * float(part.surface.areas.sum()))
+    flow = 1.0 if material.making is None else float(material.making.slicer.get("extrusion_multiplier", 1.0))
     laid = flow * (shell + part.item.infill * (volume - shell))
-    material = body.material
-    mix = material.mix
     # Without a measured mix only the sum of a digital material's resins is known.
-    shares = {" + ".join(material.base_resins): 1.0} if mix is None else mix.fractions
+    shares = {" + ".join(material.base_resins): 1.0} if material.mix is None else material.mix.fractions
     resins_mL = {name: share * laid / ML for name, share in sorted(shares.items())}
     return ItemEstimate(part.name, volume / ML, grams(laid, material.density_g_per_cm3.nominal), resins_mL)
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, grouped
 from pneutouch.body import Body
 from pneutouch.body.solid import mesh_of
 from pneutouch.mechanics import Sensor, SensorPrediction
@@ -249,9 +249,8 @@ class PrintView:
     @cached_property
     def jobs(self) -> tuple[PrintJob, ...]:
         """Jobs in order of their first part; a part without a job's name is a job by itself."""
-        jobs: dict[tuple[str, int], list[PrintPart]] = {}
-        for number, part in enumerate(self.parts):
-            jobs.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)
+        numbered = enumerate(self.parts)
+        jobs = grouped(((part.item.job, -1 if part.item.job else number), part) for number, part in numbered)
         return tuple(PrintJob(name or parts[0].name, tuple(parts)) for (name, _), parts in jobs.items())
 
     def part(self, name: str) -> PrintPart | None:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pneutouch.arrays import grouped
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.report.blocks import Columns, Items, Plot, SheetBlock, SheetTable, Text, section
@@ -72,10 +73,7 @@ def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBl
 
 def _by_state(texts: dict[str, list[str]]) -> list[str]:
     """Sentences, by label of the driving pressure, each once with the pressures that it holds for."""
-    labels_of: dict[str, list[str]] = {}
-    for label, lines in texts.items():
-        for text in lines:
-            labels_of.setdefault(text, []).append(label)
+    labels_of = grouped((text, label) for label, lines in texts.items() for text in lines)
     return [f"At {' and '.join(labels)}: {text[:1].lower()}{text[1:]}" for text, labels in labels_of.items()]
 
 

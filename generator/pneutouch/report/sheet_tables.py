@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pneutouch.arrays import grouped
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
@@ -82,11 +83,11 @@ def warnings(sheet: SheetData) -> list[str]:
     states = sheet.prediction.all_states
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
-    left: dict[tuple[str, str], list[str]] = {}
-    for state in states:
-        for event in state.warned:
-            place = f"{event.indentation:.2f} mm at {state.driving_pressure / KPA:.4g} kPa"
-            left.setdefault((event.kind, event.message), []).append(place)
+    left = grouped(
+        ((event.kind, event.message), f"{event.indentation:.2f} mm at {state.driving_pressure / KPA:.4g} kPa")
+        for state in states
+        for event in state.warned
+    )
     if any(not _is_above(sheet, state) for state in sheet.prediction.states):
         above = [f"{text[:-1]}; its figures stand in the annex alone, marked *." for text in above]
     return above + [f"Warning: {kind} from {', '.join(found)}: {words}." for (kind, words), found in left.items()]

@@ -316,7 +316,6 @@ def _impossible(
     at_round_sizes = _least(margins(problem, rounded(problem, pool.take(rows))))
     nearest = close(int(rows[at_round_sizes.argmax()])) if at_round_sizes.max() > _UNKNOWN else None
     if nearest is not None and min(nearest.margins.values()) >= 0.0:
-        # Rounding moved those of the shortlist out, and not this one.
         return SelectionResult([nearest], None, [], pool.resin.size)
     dropped = []
     for requirement in REQUIREMENTS:

@@ -135,8 +135,8 @@ def job_files(evaluation: Evaluation) -> dict[str, bytes]:
 
 def _slicer(path: str, printer: Printer, mode: Mode, material: Material, infill: str | None = None) -> dict[str, bytes]:
     """Settings of PrusaSlicer as a file ``path``.ini, the material's over the printer's; none if they state none."""
-    facts = [one.making.slicer for one in (printer, material) if one.making is not None]
-    settings = {key: value for one in facts for key, value in one.items()}
+    stated = [one.making for one in (printer, material) if one.making is not None]
+    settings = {key: value for one in stated for key, value in one.slicer.items()}
     if not settings:
         return {}
     settings |= {"layer_height": UM * mode.layer_um} | ({} if infill is None else {"fill_density": infill})

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, grouped
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import CURVE_KEYS, ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.formats import check_format
@@ -133,9 +133,7 @@ def _columns(
     content: Mapping[str, Any], curves: Mapping[str, CurvePoints], name: str, source: str
 ) -> list[tuple[MeasuredColumn, MeasuredColumn]]:
     """Prediction and measurement of each resin and age, as columns."""
-    groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
-    for group in content["groups"]:
-        groups.setdefault((group["resin"], group["age"]), []).append(group)
+    groups = grouped(((group["resin"], group["age"]), group) for group in content["groups"])
     columns = []
     for (resin, age), members in groups.items():
         more = "" if len(groups) == 1 else f", {resin}, {age}"

@@ -9,7 +9,7 @@ from dataclasses import asdict
 import numpy as np
 
 from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
-from release.tables.atlas.sampler import AtlasSampler
+from release.tables.atlas.sampler import AtlasSampler, stretch_by_zone
 
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)
@@ -45,7 +45,7 @@ def solid_fingerprint() -> str:
                 assert equilibrium is not None
                 here = equilibrium
             answers += [here.state.filling.pressure, here.force, here.energy]
-            answers += sampler.probe.stretch_by_zone(here.state.x).tolist()
+            answers += stretch_by_zone(sampler.probe, here.state.x).tolist()
         last = sampler.pressed(0.0, _AMBIENT).path[-1]
         answers += [last.state.filling.pressure, last.force, last.energy]
     return hashlib.sha256(" ".join(f"{x:.{_DIGITS}g}" for x in answers).encode()).hexdigest()[:16]

@@ -12,7 +12,14 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
-from release.tables.atlas.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
+from release.tables.atlas.sampler import (
+    AtlasSampler,
+    Equilibrium,
+    SampledPress,
+    stretch_by_zone,
+    survey_depths,
+    survey_volumes,
+)
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
@@ -132,7 +139,7 @@ def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float,
         assert touch is not None
         peak = sampler.probe.peak(x)
         values = {
-            **dict(zip(STRETCHES, sampler.probe.stretch_by_zone(x), strict=True)),
+            **dict(zip(STRETCHES, stretch_by_zone(sampler.probe, x), strict=True)),
             "contact_radius": solid.contact.footprint(x, touch).radius,
             "von_mises": peak.von_mises,
             "fold": peak.fold,

@@ -46,9 +46,9 @@ def test_a_resin_without_its_hardness_after_a_year_is_refused_by_name(library):
         ageing_ratio(resin(library, "TangoPlus").model_copy(update={"law": law}))
 
 
-def test_only_agilus_among_the_printed_elastomers_has_no_ageing(library):
+def test_of_the_papers_resins_none_lacks_its_ageing(library):
     lacking = {name for name, resin in elastomers(library).items() if ageing_unknown(resin)}
-    assert lacking == {"Agilus30"}
+    assert {"Agilus30"} < lacking and not {name for name in lacking if name.startswith(("FLX", "Tango"))}
 
 
 def test_the_shift_follows_the_modulus_and_the_sensors_elasticity(library):

@@ -39,7 +39,7 @@ LEFT_OUT = (
     "pneutouch.mechanics.models.solid.solid_result",
     "pneutouch.workflows.build.refuse",
     "pneutouch.workflows.calibrate.calibrate.calibrate",
-    "pneutouch.workflows.compare._parts",
+    "pneutouch.report.comparison_sheet.comparison_sheet",
     "pneutouch.workflows.characterize.campaign.answers",
     "pneutouch.report.measured.sheet.measured_datasheet",
     "pneutouch.workflows.coupons.make.lay",

@@ -35,7 +35,8 @@ class StrainProbe:
     """Strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are farther than `CLAMP_REACH`
     from the clamp, and exactly at that distance, so that the extremes change continuously with the wall.
 
-    operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` selects those far enough.
+    operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` selects those far enough. places
+    (n, 2), outer (n,): all that the extremes are taken from, at rest, and whether on the outer face of its cell.
     edge_operator (n_edges, 5, 2 n_nodes): strains at the limit distance, in the cells ``edge_cells``.
     """
 
@@ -52,11 +53,10 @@ class StrainProbe:
         self.edge_cells = np.array([cell for cell, _ in edges], dtype=np.intp)
         extra = [strain_operator(rest, cells[[cell]], point[None, :]) for cell, point in edges]
         self.edge_operator = np.array([operator[0, 0] for operator, _, _ in extra]).reshape(len(edges), 5, b.shape[-1])
-        places = np.concatenate([flat[self.far], *(place[0] for _, _, place in extra)])
-        outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self.far], [p[1] > 0.0 for _, p in edges]])
-        self._relative = solid.grade(places[:, 0], places[:, 1])
-        third = np.clip(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
-        self._zone = third + 3 * outer.astype(np.intp)
+        self.places = np.concatenate([flat[self.far], *(place[0] for _, _, place in extra)])
+        sides = np.tile(points[:, 1] > 0.0, b.shape[0])[self.far]
+        self.outer = np.concatenate([sides, [point[1] > 0.0 for _, point in edges]])
+        self._relative = solid.grade(self.places[:, 0], self.places[:, 1])
         self._centre = strain_operator(rest, cells, np.zeros((1, 2)))[0][:, 0]
 
     def _distance(self, points: Array) -> Array:
@@ -109,11 +109,6 @@ class StrainProbe:
             [2.0 * jet[BY_A] * stretch[0] ** 2 + common, 2.0 * jet[BY_A] * stretch[1] ** 2 + common, h * jet[BY_H]]
         )
         return stretch, self._relative * stress / (j * h)
-
-    def stretch_by_zone(self, x: Array) -> Array:
-        """Greatest principal stretch on each face and third of the arc, inner face first, from the base up; (6,)."""
-        greatest = self._strains(x)[3].max(axis=0)
-        return np.array([greatest[self._zone == zone].max(initial=0.0) for zone in range(6)])
 
     def cell_stretch(self, x: Array) -> Array:
         """Greatest principal stretch at the centre of every cell (n_cells,) for nondimensional positions x."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Index
+from pneutouch.arrays import Array, Flags, Index, grouped
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY, log_figures, moved, neighbourhood
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
@@ -72,10 +72,8 @@ def monte_carlo(
     ``shift`` is that of the budget, None under a plate. Figures for which the same sources count use the same samples.
     """
     logs = np.empty((len(FIGURES), count))
-    groups: dict[tuple[bool, ...], list[int]] = {}
-    for figure in range(len(FIGURES)):
-        through = tuple(bool(s.counts[figure, row]) for s in sources if s.acts_on != FIGURE)
-        groups.setdefault(through, []).append(figure)
+    through = [tuple(bool(s.counts[k, row]) for s in sources if s.acts_on != FIGURE) for k in range(len(FIGURES))]
+    groups = grouped((counted, figure) for figure, counted in enumerate(through))
     for figures in groups.values():
         logs[figures] = _through_model(batch, sources, (row, count, seed), figures[0], shift)[figures]
     draw = np.random.default_rng([seed, 1])

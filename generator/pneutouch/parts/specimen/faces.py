@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Indices
+from pneutouch.arrays import Array, Flags, Indices, grouped
 from pneutouch.errors import ComputationError
 from pneutouch.parts.specimen.family import Box, Mesh, Point3
 
@@ -98,9 +98,7 @@ def triangulated(points: Array, edges: Indices) -> Indices:
 
 def _loops(points: Array, edges: Indices) -> list[Indices]:
     """The edges chained to loops of vertices; where loops meet in a point, the leftmost turn keeps them apart."""
-    leaving: dict[int, list[int]] = {}
-    for a, b in edges.tolist():
-        leaving.setdefault(a, []).append(b)
+    leaving: dict[int, list[int]] = grouped(edges.tolist())
     loops = []
     for start in list(leaving):
         while leaving[start]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, grouped
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.questions import RESET_KPA, RESET_SHARE, check_leak, check_unpressed, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
@@ -90,10 +90,7 @@ def _with_stated(
 def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, ...]:
     """Layouts that were guessed for the files of a campaign of ``runs`` runs: files read alike together, with the
     tables of a campaign file that would state the layout."""
-    alike: dict[str, list[str]] = {}
-    for file, source in sources.items():
-        if source.guessed:
-            alike.setdefault(campaign_lines(source.content), []).append(file)
+    alike = grouped((campaign_lines(one.content), file) for file, one in sources.items() if one.guessed)
     tables = [(sources[files[0]].content, tuple(files)) for files in alike.values()]
     return tuple(
         ReadFiles(columns=each.columns, format=each.format, files=files, whole_campaign=len(files) == runs)

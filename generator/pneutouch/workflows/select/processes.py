@@ -237,13 +237,12 @@ def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bo
     def made(printer: Printer) -> set[str]:
         return {name for name in soft if printer.mode_for(materials[name]) is not None}
 
-    names, known = [], [(made(base.printer), base.printer.smallest)]
+    known = {base.design.print.profile: (made(base.printer), base.printer.smallest)}
     for name, printer in library.readable("printers", Printer).items():
         makes, fit = made(printer), printer.process == here and target.have.holds("printers", name)
-        if fit and makes and not any(makes <= had and printer.smallest == sizes for had, sizes in known):
-            names.append(name)
-            known.append((makes, printer.smallest))
-    return names
+        if fit and makes and not any(makes <= had and printer.smallest == sizes for had, sizes in known.values()):
+            known[name] = makes, printer.smallest
+    return list(known)[1:]
 
 
 def on_process(target: Target, process: str, library: Library) -> Target:

@@ -6,6 +6,7 @@ from itertools import pairwise, permutations
 from pathlib import Path
 from typing import Any
 
+from pneutouch.arrays import grouped
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError, shown
@@ -157,9 +158,7 @@ def _variants(order: TrayOrder, library: Library) -> list[TrayVariant]:
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
     """Pieces of a variant that the printer prints, one a job, and notes on the parts left out."""
     assembly, bodies = value.assembly, order.tray.tray.bodies
-    groups: dict[str, list[Solid]] = {}
-    for solid in assembly.solids:
-        groups.setdefault(assembly.job(solid.name), []).append(solid)
+    groups = grouped((assembly.job(solid.name), solid) for solid in assembly.solids)
     pieces, notes = [], []
     for solids in groups.values():
         names = [solid.name for solid in solids]
