@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pneutouch.body.solid import welded
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
@@ -295,3 +296,13 @@ def test_a_plug_leaves_a_side_port_as_wide_a_way_as_its_passage(port):
     assert bottom < layout.port_axis - passage < layout.port_axis + passage < top == 0.0
     assert 2 * math.pi * passage * gap >= math.pi * passage**2
     assert math.pi * (layout.opening_radius**2 - neck**2) >= math.pi * passage**2
+
+
+def test_no_triangle_of_a_luer_lock_vanishes_in_a_file():
+    """Its lugs nearly meet an edge of the body at this tolerance: corners 1e-9 mm apart were left."""
+    changes = {"print.profile": "form3", "membrane.material": "Elastic50A", "connector.port": "luer-female"}
+    body = next(body for body in assemble(load_scene("paper-dome", changes)).bodies if body.name == "connector")
+    corners = body.vertices[body.triangles]
+    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min() > 1e-5
+    _, triangles = welded(body.vertices, body.triangles)
+    assert (triangles != np.roll(triangles, 1, axis=1)).all()

@@ -10,8 +10,10 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import assemble
+from pneutouch.parts.assembly import under_ceilings
 from pneutouch.printability import PrintSubject
 from pneutouch.printability.estimate import estimate
+from pneutouch.printability.rulebook import mould_subject
 from tests.printability.gallery import box, item, printer
 
 
@@ -80,6 +82,22 @@ def test_bodies_of_one_job_are_one_estimate_and_it_is_json():
     assert job.size_mm == (10, 10, 20)
     assert [entry.name for entry in job.items] == ["a", "b"]
     assert job.support_mL == 0.0
+
+
+def test_the_space_under_a_table_is_that_of_its_top_without_the_legs():
+    standing = item(table()).body
+    assert under_ceilings(standing, 1.0) == pytest.approx((20 * 20 - 2 * 4 * 4) * 8)
+    assert under_ceilings(standing, -1.0) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_mould_is_estimated_with_its_infill():
+    mould = assemble(load_scene("cast-dome")).mould
+    shares = {
+        job.job: job.items[0].mass_g / solid.mass
+        for job, solid in zip(estimate(mould_subject(mould)), mould.solids, strict=True)
+    }
+    # A thick part is light, a thin one all outlines.
+    assert 0.3 < shares["mould-cap"] < 0.6 and shares["mould-ring"] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("seat", ["glued-flange", "clamped-flange-M2"])

@@ -69,6 +69,7 @@ def test_a_printed_design_is_compared_with_printed_resins_and_a_cast_one_with_ca
     assert not any(one.is_cast for one in elastomers(library).values())
     measured = {name for name, one in elastomers(library).items() if one.measured is not None}
     assert set(compared(library, printer)) == measured and len(measured) == 7
+    assert measured < set(compared(library, casting))
     cast = {name: one for name, one in compared(library, casting).items() if name not in measured}
     assert cast and all(one.is_cast for one in cast.values())
 

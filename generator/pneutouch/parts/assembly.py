@@ -29,7 +29,7 @@ _MARGIN = 1.0
 """Distance in mm of the bodies from the coordinate planes of the print frame, so that all coordinates are positive."""
 
 
-def _under_ceilings(body: Body, up: float) -> float:
+def under_ceilings(body: Body, up: float) -> float:
     """Space in mm3 between the bed and faces that overhang by more than 45 degrees; ``up`` 1, or -1 if turned over."""
     corners = body.vertices[body.triangles]
     areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -97,7 +97,7 @@ class Assembly:
         if self.machine(name)[0].process != "filament":
             return True
         body = next(body for body in self.bodies if body.name == name)
-        return _under_ceilings(body, 1.0) <= _under_ceilings(body, -1.0)
+        return under_ceilings(body, 1.0) <= under_ceilings(body, -1.0)
 
     @cached_property
     def print_offset(self) -> Array:
