@@ -46,7 +46,8 @@ def test_json_lists_ranked_designs_with_uncertainty_and_margins():
         assert design["binding"] in design["margins"]
         assert min(room for room in design["margins"].values() if room is not None) >= 0
     assert all(d["solid"]["within_expanded_uncertainty"] for d in said["designs"][:3])
-    assert said["left_out"] == {"Agilus30": "the Stratasys Objet260 Connex cannot run it"}
+    assert "Agilus30" in said["left_out"]
+    assert set(said["left_out"].values()) == {"the Stratasys Objet260 Connex cannot run it"}
 
 
 def test_a_written_design_can_be_predicted(tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ import pytest
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, PneutouchError
+from pneutouch.output.new import PRINTED_PORT
 from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declarations, table_of
@@ -55,7 +56,8 @@ def test_every_card_is_its_design_with_the_figures_of_the_table(found, library):
     designs = content["selection"]["designs"]
     assert [card["rank"] for card in content["cards"]] == [design["rank"] for design in designs]
     for card, design in zip(content["cards"], designs, strict=True):
-        whole = validate(DesignFile, assigned(DesignFile(), design["set"], "my-sensor"), "a test")
+        base = validate(DesignFile, {"connector": {"port": PRINTED_PORT}}, "a test")
+        whole = validate(DesignFile, assigned(base, design["set"], "my-sensor"), "a test")
         assert opened(card["state"], library) == whole
         rows = {what: (value, added) for what, value, added in card["rows"]}
         value, interval = rows["Sensitivity"]

@@ -72,6 +72,7 @@ def test_a_grade_is_one_card_with_the_table_of_the_command(tmp_path, command, li
         "given.graded": "true",
         "given.wall_thickness_mm": "1.2",
         "setting.base": first,
+        "setting.profile": "j735",
     }
     arguments = {"base": "paper-dome", "values": values, "files": [], "bases": bases}
     steps = []

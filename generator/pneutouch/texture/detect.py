@@ -73,7 +73,7 @@ class BackgroundFitter:
         shaped = density.reshape(*density.shape[:-1], len(voices), len(ratio))
         return np.asarray(np.sqrt(shaped @ gain * voices))
 
-    def draw(self, coefficients: Array, number: int, rng: np.random.Generator) -> Array:
+    def draw(self, coefficients: Array, number: int, rng: "np.random.Generator") -> Array:
         """Draw ``number`` records of noise, (number, n): halves of periodic noise, so that ends do not meet."""
         import scipy.fft
 

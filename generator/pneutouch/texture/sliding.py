@@ -126,6 +126,7 @@ def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
     track = press.march(np.linspace(0.0, 1.0, _COLUMNS) * depth[:, None])
     travel, force, _, radius, force_slope, rise_slope = _dimensional(press, track)
     known = np.logical_and.accumulate(track.ok, axis=1) & (force_slope > 0)
+    known[:, 0] = track.ok[:, 0]
     force = np.where(known, force, -np.inf)
     reached = force.max(axis=1) >= preload
     at = np.full(len(batch), np.nan)

@@ -269,7 +269,7 @@ def _columns(
     pressed_curves: PressCurves,
     place: int,
     options: RequestedRuns,
-    rng: np.random.Generator,
+    rng: "np.random.Generator",
 ) -> dict[str, Array]:
     """Columns of one run by name, in the units of its file."""
     truth, curve, sensor = subject.truth, pressed_curves.curves[place], pressed_curves.sensor

@@ -147,7 +147,7 @@ class ModelDeviation:
         0.0, "1", "standard deviation of the share that varies along the travel and with the driving pressure"
     )
 
-    def deviated(self, curves: PressCurves, rng: np.random.Generator) -> PressCurves:
+    def deviated(self, curves: PressCurves, rng: "np.random.Generator") -> PressCurves:
         """Curves of one specimen with the deviations that ``rng`` draws for it; unchanged if there are none."""
         if self == ModelDeviation():
             return curves

@@ -92,7 +92,7 @@ class SimulatedSpecimens:
     dead_volume: Array
 
     @classmethod
-    def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> "SimulatedSpecimens":
+    def draw(cls, scatter: ScatterModel, count: int, rng: "np.random.Generator") -> "SimulatedSpecimens":
         """Draw ``count`` specimens."""
         return cls(
             np.exp(scatter.modulus * rng.standard_normal(count)),

@@ -55,7 +55,7 @@ def simulate_run(
     protocol: RunProtocol,
     rig: RigModel,
     rate: float,
-    rng: np.random.Generator,
+    rng: "np.random.Generator",
     *,
     wall: WallMemory = WALL,
     scatter: ScatterModel = SCATTER,
@@ -136,7 +136,7 @@ def _lagging(time: Array, knots: Array, travels: Array, play: float) -> Array:
     return np.asarray(np.interp(time, times, reads))
 
 
-def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: RecordSamples) -> RecordSamples:
+def _read(rig: RigModel, rate: float, rng: "np.random.Generator", true: RecordSamples) -> RecordSamples:
     """Readings of the instruments from the true values, without the samples that are missed."""
     time, position, force, pressure = true
     zero = rng.standard_normal(3)

@@ -67,7 +67,7 @@ class UncertaintySource:
             whole = (slopes[INPUTS.index(self.acts_on)] * self.standard) ** 2
         return np.where(self.counts, whole, 0.0)
 
-    def deviations(self, row: int, count: int, draw: np.random.Generator) -> dict[str, Array]:
+    def deviations(self, row: int, count: int, draw: "np.random.Generator") -> dict[str, Array]:
         """Sampled changes (count,) by input, in the form for `moved`: logarithmic, or mm3 for the dead volume."""
         if self.acts_on == JOINT:
             rows = np.array([*self.loads.values()])
@@ -80,7 +80,7 @@ class UncertaintySource:
         """Fourth moment over squared variance of the deviation, or of its logarithm."""
         return 1.8 if self.distribution.endswith("rectangular") else 3.0
 
-    def sample(self, row: int, count: int, draw: np.random.Generator) -> Array:
+    def sample(self, row: int, count: int, draw: "np.random.Generator") -> Array:
         """Sampled factors (count,) for sensor ``row``; for the dead volume mm3 to add. Not for a joint source."""
         flat = self.distribution.endswith("rectangular")
         unit = draw.uniform(-np.sqrt(3.0), np.sqrt(3.0), count) if flat else draw.standard_normal(count)
