@@ -79,7 +79,7 @@ def test_a_grade_is_one_card_with_the_table_of_the_command(tmp_path, command, li
     content = plain(search(arguments, None, lambda done, total, what: steps.append((done, total))))
     assert steps == [(done, 6) for done in range(1, 7)]
     words = shlex.split("select --graded --sensitivity 1.9 --tolerance 25% --same-at 0,22 --same-within 9% --wall 1.2")
-    said = command(*words, "--base", str(path), "--json")
+    said = command(*words, "--base", str(path), "--profile", "j735", "--json")
     assert content["selection"] == json.loads(said.stdout)
     (card,) = content["cards"]
     state = Question.of(card["state"]).source(bases, library).changed({})
