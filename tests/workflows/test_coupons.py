@@ -85,7 +85,8 @@ def test_what_does_not_fit_is_refused():
     "asked",
     [
         *(CouponOptions(design=name) for name in LIBRARY.paths("designs")),
-        *(CouponOptions(profile=name) for name in LIBRARY.paths("printers")),
+        # The tray of the J55 takes no dumbbell besides the others, and its order says so.
+        *(CouponOptions(profile=name, only=("puck",) if name == "j55" else ()) for name in LIBRARY.paths("printers")),
     ],
     ids=lambda asked: asked.design or asked.profile,
 )

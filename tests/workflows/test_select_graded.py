@@ -65,7 +65,7 @@ def short(shallow):
             "same_within_percent": 8.0,
         },
         "given": {"graded": True, "wall_thickness_mm": 1.2},
-        "setting": {"base": shallow},
+        "setting": {"base": shallow, "profile": "j735"},
     }
     return select_graded(Target.model_validate(content), "test", trials=4)
 
@@ -73,10 +73,11 @@ def short(shallow):
 @pytest.mark.slow
 def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short, shallow):
     names = [constant.name for constant in short.constants]
-    assert names[:-1] == ["TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995"]
+    papers = ["FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995"]
+    assert names[:-1] == ["TangoPlus", "Agilus30", *papers]
     assert short.nearest.fraction is not None
-    assert short.left_out == {"Agilus30": "the Stratasys Objet260 Connex cannot run it"}
-    assert short.solves == len(short.search.trials) + 8
+    assert "NinjaFlex" in short.left_out and set(short.left_out.values()) == {"the Stratasys J735 cannot run it"}
+    assert short.solves == len(short.search.trials) + 9
     plain = evaluate(shallow, {"membrane.material": "FLX9960", "membrane.wall_thickness_mm": 1.2}).prediction.states
     listed = next(constant.trial for constant in short.constants if constant.name == "FLX9960")
     assert listed.sensitivity[0] == pytest.approx(plain[0].figures.sensitivity, rel=1e-9)
@@ -116,7 +117,7 @@ def test_the_same_sensitivity_at_two_pressures_that_no_constant_membrane_has(tmp
 WIDEST = {
     "target": {"sensitivity_kPa_per_N": 1.9, "tolerance_percent": 2.0, "widest_range": True},
     "given": {"graded": True, "wall_thickness_mm": 1.5},
-    "setting": {"base": "paper-dome"},
+    "setting": {"base": "paper-dome", "profile": "j735"},
 }
 """The third command of docs/background/graded.md."""
 
@@ -265,13 +266,26 @@ def test_a_rejected_grade_is_shown_and_neither_saved_nor_returned(short, monkeyp
         said = json.loads(result.stdout)
         assert (said["design"]["passes_check"], said["rejected"], said["written"]) == (None, "plate: too small", None)
     assert list(tmp_path.iterdir()) == []
-    found = pt.select(sensitivity_kPa_per_N=1.9, same_sensitivity_at_kPa=[0, 22], graded=True)
+    found = pt.select(sensitivity_kPa_per_N=1.9, same_sensitivity_at_kPa=[0, 22], graded=True, profile="j735")
     assert not found.met and found.designs == () and found.to_dict()["rejected"] == "plate: too small"
 
 
 @pytest.mark.slow
 def test_a_mix_chosen_is_written_as_one(tmp_path):
-    flags = ["--sensitivity", "1.8", "--at", "12", "--inner-radius", "9.25", "--wall", "1.5", "--base", "paper-dome"]
+    flags = [
+        "--sensitivity",
+        "1.8",
+        "--at",
+        "12",
+        "--inner-radius",
+        "9.25",
+        "--wall",
+        "1.5",
+        "--base",
+        "paper-dome",
+        "--profile",
+        "j735",
+    ]
     result = run("select", *flags, "--mix", "TangoPlus+VeroClear", "--write", "mine", "--out", str(tmp_path), "--json")
     assert result.exit_code == 0, result.output
     said = json.loads(result.stdout)
