@@ -70,6 +70,11 @@ def test_a_profile_without_times_gives_no_time_and_says_so():
     assert any("layer_seconds" in note for note in job.assumptions)
 
 
+def test_the_support_that_a_printers_own_program_lays_is_not_known():
+    (job,) = estimate(PrintSubject((item(table(), resin="Elastic50A", machine="form4"),)))
+    assert job.support_mL is None and job.items[0].volume_mL == pytest.approx((20 * 20 * 2 + 2 * 4 * 4 * 8) / 1e3)
+
+
 def test_the_resins_of_a_digital_material_are_added_up():
     (job,) = estimate(PrintSubject((item(box(10, 10, 10), resin="FLX9970"),)))
     assert job.resins_mL == {"TangoPlus + VeroClear": pytest.approx(1.0)}

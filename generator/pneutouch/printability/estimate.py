@@ -19,8 +19,6 @@ _SPARSE, _LOOP, _DENSE = 0.149, 0.25, 0.4
 """Filament support: share of space that lines of 0.35 mm, 2 mm apart, fill (PrusaSlicer's preset *common*); width in mm
 of a loop around it and thickness in mm of the dense layers under a ceiling, as PrusaSlicer 2.5.0 lays them."""
 
-_SUPPORT = f"{_SPARSE:.0%} filled, a loop around it, dense under ceilings, as by the settings beside the job"
-
 _OUTLINES = 1.35
 """Thickness in mm of three outlines, 0.45 mm each, behind which a part may have infill."""
 
@@ -42,11 +40,10 @@ def _estimate(job: PrintJob) -> JobEstimate:
     swath = job.printer.swath_mm if job.printer.process == "polyjet" else None
     swaths = None if swath is None else math.ceil(min(x, y) / swath.nominal)
     seconds, reasons = _seconds(job, layers, swaths, support)
-    items = tuple(_item(part) for part in job.parts)
     notes = [how, _PURGE, *reasons]
     if any(part.item.body.material.is_digital for part in job.parts):
         notes.append("resins of a digital material without a measured mix are added up: vendors publish no ratios")
-    return _job(job, items, support, layers, swaths, seconds, notes)
+    return _job(job, tuple(map(_item, job.parts)), support, layers, swaths, seconds, notes)
 
 
 def _cast(job: PrintJob) -> JobEstimate:
@@ -63,7 +60,7 @@ def _cast(job: PrintJob) -> JobEstimate:
 def _job(
     job: PrintJob,
     items: tuple[ItemEstimate, ...],
-    support: float,
+    support: float | None,
     layers: int | None,
     swaths: int | None,
     seconds: float | None,
@@ -79,7 +76,7 @@ def _job(
         items=items,
         size_mm=(x, y, z),
         resins_mL={name: sum(item.resins_mL.get(name, 0.0) for item in items) for name in resins},
-        support_mL=support / ML,
+        support_mL=None if support is None else support / ML,
         layers=layers,
         swaths=swaths,
         time_min=None if seconds is None else seconds / 60,
@@ -99,7 +96,7 @@ def _item(part: PrintPart) -> ItemEstimate:
     return ItemEstimate(part.name, volume / ML, grams(laid, material.density_g_per_cm3.nominal), resins_mL)
 
 
-def _support(job: PrintJob) -> tuple[float, str]:
+def _support(job: PrintJob) -> tuple[float | None, str]:
     """Volume of support in mm3, and the way in which it was found, in words."""
     voxels = job.voxels
     cubes = f"cubes of {voxels.pitch:.2f} mm"
@@ -107,12 +104,10 @@ def _support(job: PrintJob) -> tuple[float, str]:
         volume = float(supported(voxels).sum()) * voxels.cube
         return volume, f"support: everything below the part and inside it, solid, in {cubes}; no carpet below the part"
     if job.printer.process == "resin":
-        return 0.0, "support: not known, the printer's program lays it"
+        return None, "support: not known, the printer's program lays it"
     full, bare = voxels.label > 0, overhangs(voxels)
     # A flat slope is a flight of steps here, of which the edges alone hang free.
-    hanging = full.copy()
-    hanging[:, :, 1:] &= ~full[:, :, :-1]
-    bare |= grown(bare) & hanging
+    bare[:, :, 1:] |= (grown(bare) & full)[:, :, 1:] & ~full[:, :, :-1]
     # A cube is support if the next full one above it hangs free and no full one is beside it; without gaps and slivers.
     height = np.where(full, np.arange(full.shape[2]), full.shape[2] - 1)
     above = np.minimum.accumulate(height[:, :, ::-1], axis=2)[:, :, ::-1]
@@ -122,10 +117,10 @@ def _support(job: PrintJob) -> tuple[float, str]:
     sides = np.pi / 4 * sum(np.count_nonzero(np.diff(np.pad(under, 1), axis=axis)) for axis in (0, 1))
     area = voxels.pitch**2 * np.array([np.count_nonzero(under.any(axis=2)), sides])
     volume = _SPARSE * float(under.sum()) * voxels.cube + float(area @ (_DENSE, _LOOP))
-    return volume, f"support: under overhangs beyond 45 degrees and bridges, in {cubes}; {_SUPPORT}"
+    return volume, f"support: under bridges and overhangs beyond 45 degrees, {_SPARSE:.0%} filled, in {cubes}"
 
 
-def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
+def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float | None) -> tuple[float | None, list[str]]:
     """Time in s, and its basis in words; None if the printer's profile does not give enough."""
     item = job.parts[0].item
     layer = item.mode.layer_seconds
@@ -140,7 +135,7 @@ def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> 
     rate = item.printer.deposition_mm3_per_s
     if layer is None or rate is None:
         return None, ["time: the printer's profile gives no layer_seconds or no deposition_mm3_per_s"]
-    volume = support + ML * sum(sum(_item(part).resins_mL.values()) for part in job.parts)
+    volume = (support or 0.0) + ML * sum(sum(_item(part).resins_mL.values()) for part in job.parts)
     text = (
         f"time: {volume:.0f} mm3 at {rate.nominal:g} mm3/s ({rate.source}) and {layers} layers x {layer.nominal:g} s "
         f"({layer.source}); {'solid' if item.infill == 1 else f'{item.infill:.0%} infill'}"

@@ -107,8 +107,8 @@ class JobEstimate:
     """Size of the job as it stands."""
     resins_mL: Mapping[str, float]
     """Resins of all bodies by name."""
-    support_mL: float
-    """Volume of the support material."""
+    support_mL: float | None
+    """Volume of the support material; null: the printer's own program lays it."""
     layers: int | None
     """Number of layers; null: it is cast."""
     swaths: int | None
