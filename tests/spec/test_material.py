@@ -1,11 +1,11 @@
-"""Numbers of a material in another unit are refused, with the unit that they may be in."""
+"""Numbers of a material in another unit, and settings that are no lines of a file, are refused with what would be right."""
 
 from __future__ import annotations
 
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.spec.material import Material
+from pneutouch.spec.material import MakingFacts, Material
 from pneutouch.spec.read import validate
 from tests.refusals import refused
 
@@ -73,3 +73,19 @@ def test_a_shift_by_temperature_rises_and_has_factors_above_zero(library, shift)
             shear_modulus_is="relaxed",
             relaxation=[{"terms": terms, "source": "made up for a test", "shift": shift}],
         )
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("extrusion_multiplier", "115%"),
+        ("extrusion_multiplier", 115.0),
+        ("extrusion_multiplier", 0.0),
+        ("fill_density", "20%\nstart_gcode = M112"),
+        ("brim\nwidth", 5.0),
+    ],
+)
+def test_a_setting_that_is_no_line_is_refused_with_its_key(key, value):
+    with pytest.raises(InputError) as caught:
+        validate(MakingFacts, {"slicer": {key: value}, "source": "made up for a test"}, "own.toml")
+    assert caught.value.file == "own.toml" and caught.value.key == "slicer"

@@ -4,8 +4,9 @@ import math
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.fields import FieldsError, MaterialKind, SparseTable, Table
 from pneutouch.spec.values import Quantity
 
@@ -70,6 +71,17 @@ class MakingFacts(Table):
         default={}, description="Settings of PrusaSlicer by its own names; filament."
     )
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
+
+    @field_validator("slicer")
+    @classmethod
+    def _lines_of_a_file(cls, given: dict[str, float | str]) -> dict[str, float | str]:
+        for key, value in given.items():
+            bad_flow = key == "extrusion_multiplier" and not (isinstance(value, float) and 0.5 <= value <= 2.0)
+            if bad_flow or not f"{key}{value}".isprintable():
+                raise ValueError(
+                    f"{key} = {shown(value)}: must be {'from 0.5 to 2' if bad_flow else 'one line of text'}"
+                )
+        return given
 
 
 class RelaxationTerm(Table):

@@ -137,11 +137,10 @@ def _slicer(path: str, printer: Printer, mode: Mode, material: Material, infill:
     """Settings of PrusaSlicer as a file ``path``.ini, the material's over the printer's; none if they state none."""
     stated = [one.making for one in (printer, material) if one.making is not None]
     settings = {key: value for one in stated for key, value in one.slicer.items()}
-    if not settings:
-        return {}
-    settings |= {"layer_height": UM * mode.layer_um} | ({} if infill is None else {"fill_density": infill})
-    lines = (f"{key} = {value if isinstance(value, str) else format(value, 'g')}\n" for key, value in settings.items())
-    return {f"{path}.ini": "".join(sorted(lines)).encode()}
+    more = {"layer_height": UM * mode.layer_um} | ({} if infill is None else {"fill_density": infill})
+    texts = {key: value if isinstance(value, str) else f"{value:g}" for key, value in (settings | more).items()}
+    lines = sorted(f"{key} = {text}\n" for key, text in texts.items())
+    return {f"{path}.ini": "".join(lines).encode()} if settings else {}
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
