@@ -4,6 +4,7 @@ import datetime
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +20,6 @@ from pneutouch.spec.coupon import FeatureGauge, GaugeSize, LeakCap, VolumePlug
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, FeatureSize, Printer
 from pneutouch.units import ML
-from pneutouch.wording import data_of
 
 MARK = "measured on coupons"
 """Part of the source of every quantity that was measured on a coupon."""
@@ -86,7 +86,16 @@ choice, several times the tolerance that vendors state for small features."""
 _ROUNDING = 1e-9
 """Tolerance in comparisons of lengths, mm."""
 
-_SMALLEST: dict[str, tuple[str, list[str]]] = data_of(__file__)
+_SMALLEST = MappingProxyType(
+    {
+        "wall_soft_mm": ("wall", ("elastomer",)),
+        "wall_rigid_mm": ("wall", ("rigid",)),
+        "pin_soft_mm": ("pin", ("elastomer",)),
+        "pin_rigid_mm": ("pin", ("rigid",)),
+        "hole_mm": ("hole", ("elastomer", "rigid")),
+        "gap_mm": ("slot", ("elastomer", "rigid")),
+    }
+)
 """For each smallest feature of a printer profile, the row of the gauge and the kinds of material that give it."""
 
 MeasuredGauges = Sequence[tuple[str, Material, FeatureGauge]]

@@ -37,9 +37,7 @@ def show(
 
 
 NO_RECIPE = "no recipe: it cannot be built again"
-OF_A_JOB = (
-    "no recipe: a file of pneutouch to print from; to build again, take the design's 3MF, a folder above its jobs"
-)
+OF_A_JOB = "no recipe: one print job; to build again, take the design's own 3MF, beside the folder jobs"
 
 
 def show_text(package: ShownPackage) -> str:

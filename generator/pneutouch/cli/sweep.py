@@ -73,9 +73,8 @@ def sweep(
         machines = ComputeResources(workers, scheduler)
         done = run(plan, target, machines, fresh=fresh, yes=yes, progress=progress)
     with bar("drawing the sensitivity"):
-        a_point = (
-            sum(done.states.values()) // done.points if _FILLED & {key.replace(".", "_") for key in plan.varied} else 1
-        )
+        filled = _FILLED & {key.replace(".", "_") for key in plan.varied}
+        a_point = sum(done.states.values()) // done.points if filled else 1
         rows, written = write_companions(done.path, _MOST * a_point)
         maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
     _report(done, rows, written, maps, json=json)

@@ -28,8 +28,6 @@ def unit_of(key: str) -> str:
 
 TEXT: Schema = {"type": "string"}
 NUMBER: Schema = {"type": "number"}
-WHOLE: Schema = {"type": "integer", "minimum": 0}
-FLAG: Schema = {"type": "boolean"}
 
 
 def or_null(schema: Schema) -> Schema:
@@ -56,7 +54,6 @@ def items(schema: Schema) -> Schema:
 
 NUMBERS = items(NUMBER)
 TEXTS = items(TEXT)
-PAIR: Schema = {**NUMBERS, "minItems": 2, "maxItems": 2}
 
 
 def mapping(schema: Schema) -> Schema:

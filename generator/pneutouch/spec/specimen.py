@@ -13,7 +13,6 @@ from pneutouch.spec.design import DocumentHead, Printable
 from pneutouch.spec.fields import Table, name, number
 from pneutouch.spec.read import validate
 
-Period = Literal["pitch_mm", "pitches_mm", "cell_mm"]
 StrutKind = Literal["simple-cubic", "bcc", "fcc", "octet", "kelvin"]
 SurfaceKind = Literal["gyroid", "schwarz-p", "diamond"]
 

@@ -52,9 +52,8 @@ def _other(job: PrintJob, resins: list[str], digital: bool) -> str:
     printer = job.parts[0].item.printer
 
     def fits(mode: Mode) -> bool:
-        return len(resins) <= (mode.resins_at_once or printer.resins_at_once) and (
-            mode.digital_materials or not digital
-        )
+        most = mode.resins_at_once or printer.resins_at_once
+        return len(resins) <= most and (mode.digital_materials or not digital)
 
     if not set(resins) <= set(printer.resins):
         return _FIX

@@ -113,21 +113,14 @@ def check_driving(view: PrintView) -> list[Finding]:
 
 def _unlined(context: SensorContext) -> list[Finding]:
     """Findings on the states whose curves give no sensitivity."""
-    return [
-        Finding(
-            "driving",
-            "warning",
-            context.membrane,
-            f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}",
-            "take a driving pressure nearer to 0 kPa or a thicker wall",
-            _SOURCES["no line"],
-            (0.0, 0.0, state.apex_outer),
-            None,
-        )
-        for state in context.prediction.all_states
-        for event in state.warned
-        if event.kind == NO_LINE
-    ]
+    states = context.prediction.all_states
+    lost = [(one, event) for one in states for event in one.warned if event.kind == NO_LINE]
+    fix, source = "take a driving pressure nearer to 0 kPa or a thicker wall", _SOURCES["no line"]
+    found = []
+    for state, event in lost:
+        text, at = f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}", (0.0, 0.0, state.apex_outer)
+        found.append(Finding("driving", "warning", context.membrane, text, fix, source, at, None))
+    return found
 
 
 def _pressed(context: SensorContext) -> list[Finding]:
