@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.library import compared
 from pneutouch.output.new import process_values
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -29,6 +30,14 @@ def test_every_process_has_a_printer_that_makes_an_elastomer(process):
     printer = LIBRARY.load("printers", values["print"]["profile"])
     assert printer.process == process
     assert printer.mode_for(LIBRARY.load("materials", values["membrane"]["material"])) is not None
+
+
+@pytest.mark.parametrize("process", ["polyjet", "filament", "resin", "casting"])
+def test_the_measured_resins_give_the_error_whatever_the_printer(process):
+    printer = LIBRARY.load("printers", process_values(process, None, LIBRARY)["print"]["profile"])
+    measured = {name for name, one in PRINTED.items() if one.measured is not None}
+    assert len(measured) == 7
+    assert measured <= compared(LIBRARY, printer).keys()
 
 
 def test_every_printed_elastomer_has_a_printer():
