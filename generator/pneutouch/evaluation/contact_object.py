@@ -91,8 +91,12 @@ def check_shape(scene: ResolvedDesign) -> None:
     membrane = scene.design.membrane
     why = no_hemisphere(membrane.dome)
     if why is not None:
-        problem = f"the atlas finds designs: {why}"
-        raise InputError(problem, file=scene.where, key="membrane.shape", value=membrane.shape)
+        key, value = (
+            ("shape", membrane.shape)
+            if membrane.root_fillet_mm is None
+            else ("root_fillet_mm", membrane.root_fillet_mm)
+        )
+        raise InputError(f"the atlas finds designs: {why}", file=scene.where, key=f"membrane.{key}", value=value)
 
 
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:

@@ -45,9 +45,10 @@ _WORDS: dict[str, str] = data_of(__file__)
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
-    """Notes on the uncertainty of a graded wall and of a fitted law; empty for other walls."""
+    """Notes on the uncertainty of a graded wall, a fitted law and a fillet; empty for other domes."""
     graded = () if sensor.wall.grade is None else (_WORDS["graded"].format(gap=GAP, steep=STEEP_GAP),)
-    return (*graded, _WORDS["law"]) if sensor.wall.fitted else graded
+    filleted = () if sensor.dome.shape.plain is sensor.dome.shape else (_WORDS["filleted"],)
+    return (*graded, *filleted, *((_WORDS["law"],) if sensor.wall.fitted else ()))
 
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.

@@ -207,8 +207,11 @@ class Sensor:
 
     @property
     def even(self) -> "Sensor":
-        """The sensor as the atlas takes it: its mean modulus everywhere, the neo-Hookean wall for a fitted law."""
+        """The sensor as the atlas takes it: its mean modulus everywhere, the neo-Hookean wall for a fitted law, and a
+        sharp corner at its root."""
         even = self if self.wall.grade is None else self.replace(grade=None)
+        if even.dome.shape.plain is not even.dome.shape:
+            even = even.replace(shape=even.dome.shape.plain)
         return even.replace(law=None) if self.wall.fitted else even
 
     def of_modulus(self, shear_modulus: float) -> "Sensor":

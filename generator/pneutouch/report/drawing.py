@@ -119,6 +119,9 @@ class _Section:
         note = f"R{layout.inner_radius:g} {self.soft}"
         leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
         leader(ax, polar(middle, 55), polar(outside, 55), f"wall {layout.wall:g} {self.soft}", "left")
+        if (fillet := self.assembly.scene.design.membrane.root_fillet_mm) is not None:
+            (r, z), text = layout.shape.outer[0].along(np.array([0.5]))[0], f"fillet R{fillet:g}"
+            leader(ax, (r, z), polar(outside, 25), text, "left")
         text, port = port_note(self.assembly.scene), layout.port
         if layout.port_axis is None:
             tip = (0.9 * port.outside[0][0][0], layout.under - 0.7 * port.length)

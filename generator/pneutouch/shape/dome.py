@@ -41,6 +41,11 @@ class DomeShape(ABC):
         """Pieces of the face that is pressed, from base to pole, tagged `OUTER_WALL`."""
 
     @property
+    def plain(self) -> "DomeShape":
+        """The shape without the fillet at its root: itself if it has none."""
+        return self
+
+    @property
     def scale(self) -> float:
         """Unit of length (mm) of the solid's dimensionless quantities: the inner radius."""
         return self.inner_radius

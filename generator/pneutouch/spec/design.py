@@ -84,11 +84,18 @@ def _shapes() -> list[str]:
 class Membrane(SparseTable):
     """[membrane]: the soft dome (paper, section 2-B)."""
 
-    left_out = ("shape",)
+    left_out = ("shape", "root_fillet_mm")
 
     shape: Annotated[str, OneOf(_shapes)] = Field(default="hemisphere", description="Shape of the unloaded dome.")
     inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
     wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
+    root_fillet_mm: float | None = number(
+        None,
+        unit="mm",
+        low=0.1,
+        high=10,
+        help="Radius of the fillet between the outside of the dome and its flange; left out: a sharp corner.",
+    )
     material: ResinOrMix = Field(
         default="TangoPlus",
         json_schema_extra={"registry": "materials"},
@@ -109,9 +116,12 @@ class Membrane(SparseTable):
     @property
     def dome(self) -> "DomeShape":
         """The unloaded dome."""
-        from pneutouch.shape import SHAPES
+        from pneutouch.shape import SHAPES, FilletedHemisphere
 
-        return SHAPES[self.shape](self.inner_radius_mm, self.wall_thickness_mm)
+        size = self.inner_radius_mm, self.wall_thickness_mm
+        return (
+            SHAPES[self.shape](*size) if self.root_fillet_mm is None else FilletedHemisphere(*size, self.root_fillet_mm)
+        )
 
 
 class Connector(SparseTable):
