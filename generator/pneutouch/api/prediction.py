@@ -14,7 +14,7 @@ from pneutouch.api import show
 from pneutouch.api.fields import numbers_of
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
-from pneutouch.evaluation.result import by_model, predicted, predicted_in_full
+from pneutouch.evaluation.result import predicted, predicted_in_full
 from pneutouch.results.prediction import StateRecord
 from pneutouch.results.record import plain
 
@@ -102,7 +102,8 @@ class PredictedState(show.Shown):
         vars(self).update({**content, **curve, "curve": curve, "limit_pressure": None, "force_at_range_end": None})
         for key, value in {**{name: entry.value for name, entry in known.items()}, **content}.items():
             split = _UNIT.match(key)
-            if split is None or key == "driving_pressure_kPa" or not isinstance(value, float | None):
+            given = key == "driving_pressure_kPa" and key not in known
+            if split is None or given or not isinstance(value, float | None):
                 continue
             name, unit = split[1], split[2].replace("_per_", "/")
             setattr(self, name, None)
@@ -139,7 +140,7 @@ class Prediction(show.Documented):
     @cached_property
     def filled(self) -> tuple[PredictedState, ...]:
         """States given by ``pneumatics.injected_volumes_mL`` or ``apex_heights_mm``, also beyond the limit point."""
-        return tuple(PredictedState(state) for state in by_model(self.evaluation.prediction).filled)
+        return tuple(PredictedState(state) for state in predicted(self.evaluation).filled)
 
     def __iter__(self) -> Iterator[PredictedState]:
         return iter(self.states)

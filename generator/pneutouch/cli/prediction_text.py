@@ -116,13 +116,12 @@ def _state_table(states: Sequence[StateRecord]) -> str:
     head += ["R2", "N/mm at 1 mm", "3 mm", "mean", "range N", "range ends at"]
     rows = []
     for state in states:
-        known = None if state.uncertainty is None else state.uncertainty.known.get(SENSITIVITY_KEY)
         row = [
             f"{state.driving_pressure_kPa:g}",
             f"{state.apex_height_inner_mm:.3f}",
             f"{state.apex_height_outer_mm:.3f}",
             _optional(state.sensitivity_kPa_per_N, ".3f"),
-            "-" if known is None else f"{known.low:.2f} to {known.high:.2f}",
+            _known(state, SENSITIVITY_KEY, ".2f"),
             *(_interval(_sampled(state)) for _ in sampled),
             _optional(state.r_squared, ".4f"),
             _optional(state.stiffness_at_1mm_N_per_mm, ".3f"),
@@ -133,6 +132,12 @@ def _state_table(states: Sequence[StateRecord]) -> str:
         ]
         rows.append(row)
     return table_text(head, rows)
+
+
+def _known(state: StateRecord, figure: str, form: str) -> str:
+    """Interval of a figure, k = 2; a dash if it is not known."""
+    known = None if state.uncertainty is None else state.uncertainty.known.get(figure)
+    return "-" if known is None else f"{known.low:{form}} to {known.high:{form}}"
 
 
 def _as_drawn(prediction: PredictionRecord) -> list[str]:
@@ -157,14 +162,15 @@ def _filled(states: Sequence[StateRecord]) -> list[str]:
             [
                 f"{held.injected_volume_mL:.3f}",
                 f"{state.driving_pressure_kPa:.3f}",
-                f"{state.apex_height_inner_mm:.3f}",
+                _known(state, "driving_pressure_kPa", ".1f"),
                 f"{state.apex_height_outer_mm:.3f}",
                 held_by(held.stable_regulated, held.stable_sealed),
+                _known(state, SENSITIVITY_KEY, ".2f"),
                 *_figures_cells(state),
             ]
         )
-    head = ["mL in", "kPa", "apex in mm", "apex out mm", "held by", *_FIGURES_HEAD]
-    return ["by injected gas, mL at ambient pressure (no interval is known):", table_text(head, rows), ""]
+    head = ["mL in", "kPa", "kPa (k = 2)", "apex out mm", "held by", "S (k = 2)", *_FIGURES_HEAD]
+    return ["by injected gas, mL at ambient pressure:", table_text(head, rows), ""]
 
 
 _FIGURES_HEAD = ["S kPa/N", "N/mm", "range N", "range ends at"]

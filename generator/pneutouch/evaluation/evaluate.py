@@ -124,6 +124,15 @@ class Evaluation:
         return uncertainties(self.prediction, self.sensor, self.scene, lambda: self.resins)
 
     @cached_property
+    def filled_uncertainty(self) -> tuple[UncertaintyRecord, ...]:
+        """Uncertainty of the states given by their filling, as `uncertainty`."""
+        if not self.prediction.filled:
+            return ()
+        from pneutouch.evaluation.filled import filled_uncertainties
+
+        return filled_uncertainties(self)
+
+    @cached_property
     def as_drawn(self) -> SensorPrediction | None:
         """Prediction with the gas as drawn, if a dead volume of 0 is stated behind a tube: by the atlas, for a law
         that this does not hold by the solid. Else None, as for the model membrane, which loads no tables."""
@@ -153,7 +162,7 @@ class Evaluation:
         """Outcomes by every mixing curve of the membrane's mix; empty for a resin, and for a calibrated sensor."""
         if self.scene.calibration is not None or not self.scene.membrane_material.curves:
             return ()
-        from pneutouch.mechanics.mixing_curves import curve_outcomes
+        from pneutouch.evaluation.subject import curve_outcomes
 
         known = (self.scene.membrane_material, self.scene.printer)
         return curve_outcomes(self.sensor, *known, self.prediction, self.rating)
@@ -240,8 +249,6 @@ def evaluate_drawn(
     scene, assembly, sensor, options, aged = drawn
     pneumatics = scene.design.pneumatics
     pressures = [p * KPA for p in pneumatics.driving_pressures_kPa]
-    fillings = [Filling("injected", v * ML) for v in pneumatics.injected_volumes_mL or ()]
-    fillings += [Filling("apex", h) for h in pneumatics.apex_heights_mm or ()]
     try:
         prediction = predict(
             scene.name,
@@ -251,7 +258,7 @@ def evaluate_drawn(
             closure=options.closure,
             tolerance=options.tolerance,
             answers=answers,
-            fillings=fillings,
+            fillings=fillings_of(scene),
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
@@ -275,6 +282,13 @@ def evaluate_drawn(
     if more:
         prediction = replace(prediction, assumptions=(*prediction.assumptions, *more))
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
+
+
+def fillings_of(scene: ResolvedDesign) -> list[Filling]:
+    """The fillings of a scene that give states in addition to its driving pressures: injected gas, then heights."""
+    pneumatics = scene.design.pneumatics
+    injected = [Filling("injected", v * ML) for v in pneumatics.injected_volumes_mL or ()]
+    return [*injected, *(Filling("apex", h) for h in pneumatics.apex_heights_mm or ())]
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:

@@ -32,7 +32,6 @@ from pneutouch.results.prediction import (
     ShearRecord,
     StateRecord,
 )
-from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
 
@@ -55,7 +54,7 @@ NOTHING = 1e-12
 
 def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """A prediction's record with rating and uncertainty of every state; ``samples`` > 0 adds sampled intervals."""
-    uncertainty = evaluation.uncertainty
+    uncertainty, filled = evaluation.uncertainty, evaluation.filled_uncertainty
     if samples:
         uncertainty = uncertainties(
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
@@ -67,6 +66,7 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     return replace(
         record,
         states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
+        filled=tuple(replace(s, uncertainty=u) for s, u in zip(record.filled, filled, strict=True)),
         contact=contact_document(evaluation.scene).get("contact"),
         rating=rating_record(evaluation.rating, [s.driving_pressure for s in evaluation.prediction.all_states]),
         dead_volume_note=assembly.dead_volume_note or None,
@@ -124,13 +124,7 @@ def by_model(prediction: SensorPrediction, *, curves: bool = True) -> Prediction
         ),
         states=tuple(_state(state, curves=curves) for state in prediction.states),
         assumptions=prediction.assumptions,
-        filled=tuple(
-            replace(
-                _state(state, curves=curves),
-                uncertainty=UncertaintyRecord(unknown="the budget is of driving pressures"),
-            )
-            for state in prediction.filled
-        ),
+        filled=tuple(_state(state, curves=curves) for state in prediction.filled),
     )
     return rounded(record, MODEL_DIGITS, NOTHING) if curves else record
 

@@ -85,6 +85,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         findings=evaluation.findings,
         input_hash=input_hash,
         uncertainty=evaluation.uncertainty,
+        filled_uncertainty=evaluation.filled_uncertainty,
         estimates=evaluation.estimates,
         rating=evaluation.rating,
         numerical_error=stated_error(prediction.model, sensor),

@@ -43,7 +43,7 @@ class SheetData:
         prediction: Prediction of the sensor.
         findings: Findings of the print rules.
         input_hash: Hash of all inputs of the sheet.
-        uncertainty: One record for each state, as `Evaluation.uncertainty`.
+        uncertainty, filled_uncertainty: One record for each state, as `Evaluation.uncertainty`.
         estimates: Resin, support and time of each print job.
         rating: The rated driving pressure and what it follows from.
         numerical_error: Relative numerical error in sensitivity that the model states.
@@ -75,6 +75,7 @@ class SheetData:
     findings: list[Finding]
     input_hash: str
     uncertainty: tuple[UncertaintyRecord, ...]
+    filled_uncertainty: tuple[UncertaintyRecord, ...]
     estimates: tuple[JobEstimate, ...]
     rating: Rating
     numerical_error: float

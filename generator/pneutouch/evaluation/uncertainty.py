@@ -58,10 +58,10 @@ _VACUUM = "the derivatives are the atlas's, which has no states below ambient pr
 DIGITS = 6
 """Significant digits of an uncertainty: more than are meaningful, fewer than differ between processors."""
 
-_NOTHING = 1e-9
+NOTHING = 1e-9
 """Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
 
-_TREND = _WORDS["membrane"].format(off=1 + NUMERICAL["membrane"])
+TREND = _WORDS["membrane"].format(off=1 + NUMERICAL["membrane"])
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
     The atlas must cover the sensor under a plate without friction; the solid computes the effect of other contact."""
     if model == "membrane":
-        return _TREND
+        return TREND
     from pneutouch.mechanics.atlas.coverage import outside_atlas, under_plate
 
     why = outside_atlas(under_plate(sensor))
@@ -225,7 +225,7 @@ def _of_blown(
     # The air's effects are those of the atlas's wall: a fitted law's are computed by the solid.
     airs: list[tuple[str, ...]] = [()] * len(states) if fitted else gas_text(estimate.batch)
     for row, (state, notes) in enumerate(zip(states, airs, strict=True)):
-        values = _values(prediction, state)
+        values = values_of(prediction, state)
         entry = document(estimate.budget, row, values, (*notes_of_wall, *notes), calibrated=calibrated)
         elasticities = dict(entry.elasticities or {})
         if friction is not None and friction.elasticities is not None:
@@ -238,11 +238,11 @@ def _of_blown(
             summary=text(estimate.budget, row, calibrated=calibrated),
             monte_carlo=_sampled(estimate, row, samples, entry.known) if samples else None,
         )
-        content.append(rounded(entry, DIGITS, _NOTHING))
+        content.append(rounded(entry, DIGITS, NOTHING))
     return tuple(content)
 
 
-def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
+def values_of(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
     """Values of the budget's figures by key, as the model gives them; figures that it does not give are left out."""
     peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
     if figures is not None:

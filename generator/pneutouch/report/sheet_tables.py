@@ -119,16 +119,18 @@ def filled(sheet: SheetData) -> list[SheetBlock]:
         [
             f"{state.held.injected / ML:.3g}",
             f"{state.driving_pressure / KPA:.2f}{_star(sheet, state)}",
+            interval(known, "driving_pressure_kPa") or DASH,
             f"{state.apex_outer:.2f}",
             held_by(*state.held[1:]),
+            interval(known, SENSITIVITY_KEY) or DASH,
             *(cell(state) for cell in (_sensitivity, _stiffness, _range, _ends)),
         ]
-        for state in sheet.prediction.filled
+        for state, known in zip(sheet.prediction.filled, sheet.filled_uncertainty, strict=True)
         if state.held is not None
     ]
-    head = ("Injected\nmL", "Pressure\nkPa", "Apex outside\nmm", "Held by", *_PRESSED)
-    title = "By injected gas (mL at ambient pressure) or height; no intervals are known"
-    return section(title, SheetTable(rows, head, numeric=(0, 1, 2, 4, 5, 6), small=True), level=3) if rows else []
+    head = ("Injected\nmL", "Pressure\nkPa", "k = 2\nkPa", "Apex outside\nmm", "Held by", "k = 2\nkPa/N", *_PRESSED)
+    title = "By injected gas (mL at ambient pressure) or height"
+    return section(title, SheetTable(rows, head, numeric=(0, 1, 2, 3, 5, 6, 7, 8), small=True), level=3) if rows else []
 
 
 _PRESSED = "Sensitivity\nkPa/N", "Stiffness\nN/mm", "Force range\nN", "Range ends at"

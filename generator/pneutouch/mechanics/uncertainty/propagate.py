@@ -5,7 +5,7 @@ Also the derivatives of the figures of many sensors by their inputs, local and o
 Also the uncertainty of the limit pressure alone, without a press, so that thousands of candidates cost little.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -77,8 +77,8 @@ def derivatives(
         step: Half of the central difference, relative.
         shift: Change of the figures from the plate to another contact.
     """
-    size, unit, widest = len(batch), unit_step(batch), standard.max(axis=1)
-    near, far = step * unit, np.sqrt(kurtosis) * widest
+    size = len(batch)
+    near, far = step * unit_step(batch), np.sqrt(kurtosis) * standard.max(axis=1)
     wide = far > _ONE_PAIR * near
     small = np.where(wide, near, np.maximum(near, far))
     inputs = range(len(INPUTS))
@@ -96,18 +96,47 @@ def derivatives(
     for k, ((i, _, rows), found) in enumerate(zip(moves, around, strict=True)):
         if k >= 2 * len(INPUTS):
             ends[i, k % 2][:, rows] = found - here[:, rows]
-    local = _slope(beside[:, 0], beside[:, 1]) / small[:, None]
-    whole, known = _over_spread(ends[:, 0], ends[:, 1], kurtosis[:, None])
+    return _from_changes(here, (beside, small), (ends, far >= near), batch.dead_volume, standard, kurtosis)
+
+
+def solved_derivatives(
+    batch: SensorBatch, standard: Array, kurtosis: Array, solved: Callable[[str, float], Array]
+) -> Derivatives:
+    """`derivatives` of n states by another model: ``solved`` gives the logarithms of the figures, (figures, n), with an
+    input (of `INPUTS`) changed by a number as in `moved`, the same for all; NaN for one that it does not find."""
+    near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)
+    small = np.maximum(near, far)
+    here = solved(INPUTS[0], 0.0)
+    beside = np.array([[solved(n, s * by) for s in (1.0, -1.0)] for n, by in zip(INPUTS, small.tolist(), strict=True)])
+    beside, ratio = beside - here, (far / small)[:, None, None, None]
+    wide = np.broadcast_to((far >= near)[:, None], kurtosis.shape)
+    steps = np.broadcast_to(small[:, None], kurtosis.shape)
+    return _from_changes(here, (beside, steps), (beside * ratio, wide), batch.dead_volume, standard, kurtosis)
+
+
+def _from_changes(
+    here: Array,
+    beside: tuple[Array, Array],
+    ends: tuple[Array, Flags],
+    dead_volume: Array,
+    standard: Array,
+    kurtosis: Array,
+) -> Derivatives:
+    """Derivatives from the changes of ln figure, (inputs, 2, figures, n), to both sides: by a step ``beside``, (inputs,
+    n), and to the ``ends`` of the spread, with True where these are farther than the least step."""
+    (change, step), (whole_change, wide), widest = beside, ends, standard.max(axis=1)
+    local = _slope(change[:, 0], change[:, 1]) / step[:, None]
+    whole, known = _over_spread(whole_change[:, 0], whole_change[:, 1], kurtosis[:, None])
     linear = np.abs(local) * widest[:, None]
     bent = (
         known & (np.abs(whole - linear) > _BENT_SHARE * linear) & (standard >= _WIDE * widest[:, None]) & (standard > 0)
     )
-    sign = np.where(ends[:, 0] < ends[:, 1], -1.0, 1.0)
+    sign = np.where(whole_change[:, 0] < whole_change[:, 1], -1.0, 1.0)
     slopes = np.where(bent, sign * whole / np.where(bent, widest[:, None], 1.0), local)
-    scale = np.ones_like(unit)
-    scale[DEAD] = batch.dead_volume
-    missing = (np.isnan(ends).any(axis=1) & np.isfinite(here)).any(axis=1)
-    return Derivatives(here, local * scale[:, None], local, slopes, missing & (far >= near))
+    scale = np.ones_like(step)
+    scale[DEAD] = dead_volume
+    missing = (np.isnan(whole_change).any(axis=1) & np.isfinite(here)).any(axis=1)
+    return Derivatives(here, local * scale[:, None], local, slopes, missing & wide)
 
 
 def _slope(up: Array, down: Array) -> Array:
@@ -215,6 +244,13 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: "Co
         modulus = INPUTS.index("shear_modulus")
         shift = contact.shift(float((np.sqrt(kurtosis[modulus]) * standard[modulus].max(axis=0)).max()))
     return _combined(sources, derivatives(batch, standard, kurtosis, shift=shift), shift)
+
+
+def propagate_solved(
+    batch: SensorBatch, sources: list[UncertaintySource], solved: Callable[[str, float], Array]
+) -> Budget:
+    """Budget of n states from their sources, as `propagate` but with `solved_derivatives`."""
+    return _combined(sources, solved_derivatives(batch, *_by_input(batch, sources), solved), None)
 
 
 def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]]]) -> list[Budget]:
