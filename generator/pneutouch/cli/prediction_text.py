@@ -107,6 +107,7 @@ def _rating(rating: RatingRecord) -> list[str]:
     """The rated pressure with its basis, advice that would raise it, and the driving pressures above it."""
     lines = [f"rated pressure {tenths_below(rating.rated_pressure_kPa):.1f} kPa: {rating.basis}"]
     lines += [] if rating.remedy is None else [f"to raise it: {rating.remedy}"]
+    lines += [] if rating.least_pressure_basis is None else [f"least driving pressure {rating.least_pressure_basis}"]
     return lines + [f"{finding.severity}: {finding.message}" for finding in rating.findings]
 
 

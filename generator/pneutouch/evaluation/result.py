@@ -238,6 +238,8 @@ def rating_record(rating: Rating, driving_pressures: Sequence[float]) -> RatingR
             for pressure in driving_pressures
             if (severity := rating.severity(pressure)) is not None
         ),
+        least_pressure_kPa=None if rating.vacuum is None else rating.least / KPA,
+        least_pressure_basis=rating.vacuum_basis or None,
     )
     return rounded(record, _DIGITS)
 

@@ -69,12 +69,14 @@ class Limits:
     """Driving pressures (MPa) at which each limit is met; None if a limit is not met before the limit point.
 
     ``law_range``: the wall leaves the stretches over which its law was fitted; None also if these are not known.
+    ``vacuum``: the emptied dome buckles, below 0; None also where no driving pressure is below ambient.
     """
 
     limit_point: float | None
     break_strain: float | None
     gauge: float
     law_range: float | None = None
+    vacuum: float | None = None
 
     @property
     def binding(self) -> str:

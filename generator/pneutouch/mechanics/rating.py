@@ -29,6 +29,12 @@ _WORTH = 1.05
 """Least gain in rated pressure, as a factor, for which a measurement of the modulus is advised: a choice."""
 
 
+BUCKLING = "buckling under vacuum"
+BUCKLING_SLOPE = 2.5
+"""d ln of the pressure at which an emptied dome buckles / d ln wall ratio, at most: 2 for a thin sphere (Zoelly, 1915);
+the solid has 2.0 to 2.2 for walls of 0.06 to 0.24 R0 and 2.4 at 0.27 R0 (`tests/mechanics/solid/test_filling.py`)."""
+
+
 class UncertainLimit(NamedTuple):
     """A limit of the driving pressure: its name, its nominal value and the ends of its k = 2 interval, MPa."""
 
@@ -47,12 +53,19 @@ class Rating:
         limits: The limits that are met, ordered by the lower ends of their intervals.
         measured: Rated pressure if the modulus is measured on coupons and confirmed, MPa.
         is_fitted: True if the sensor, once built, can be calibrated with measured runs.
+        vacuum: Pressure at which the emptied dome buckles; None where that was not looked for, or none is found.
     """
 
     pressure: float
     limits: tuple[UncertainLimit, ...]
     measured: float
     is_fitted: bool = True
+    vacuum: UncertainLimit | None = None
+
+    @property
+    def least(self) -> float:
+        """Least driving pressure, MPa: `RATED_SHARE` of the weaker end of buckling; -inf without that limit."""
+        return -np.inf if self.vacuum is None else RATED_SHARE * self.vacuum.high
 
     @property
     def limit(self) -> UncertainLimit:
@@ -74,10 +87,12 @@ class Rating:
         pressure, else None."""
         if pressure > self.nominal.nominal:
             return "error"
-        return "warning" if pressure > self.pressure else None
+        return "warning" if pressure > self.pressure or pressure < self.least else None
 
     def excess(self, pressure: float) -> str:
-        """Text for a driving pressure (MPa) above the rated pressure: the limit or rating that it exceeds."""
+        """Text for a driving pressure (MPa) outside the rated ones: the limit or rating that it exceeds."""
+        if pressure < 0.0:
+            return f"{pressure / KPA:.5g} kPa is below the least driving pressure: {self.vacuum_basis}"
         if self.severity(pressure) == "error":
             least = self.nominal
             return f"{pressure / KPA:.5g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
@@ -93,6 +108,15 @@ class Rating:
             f"{RATED_SHARE:.0%} of the lower end of the {limit.name}, {limit.nominal / KPA:.1f} kPa nominal, "
             f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} at k = {COVERAGE:g}"
         )
+
+    @property
+    def vacuum_basis(self) -> str:
+        """Least driving pressure with its basis, in words; empty without a limit below ambient pressure."""
+        if self.vacuum is None:
+            return ""
+        least_kPa, (name, nominal, low, high) = -tenths_below(-self.least / KPA), self.vacuum
+        ends = f"{nominal / KPA:.1f} kPa nominal, {low / KPA:.1f} to {high / KPA:.1f} at k = {COVERAGE:g}"
+        return f"{least_kPa:.1f} kPa, {RATED_SHARE:.0%} of the weaker end of {name}, {ends}"
 
     @property
     def summary(self) -> str:
@@ -146,18 +170,21 @@ def ratings(
     ``calibration`` is that of the built sensor, None without one. ``numerical`` is the model's greatest relative error
     of the limit pressure.
     """
-    spread = limit_spread(
-        SensorBatch.join([batch_of(s, [0.0]) for s in sensors]), material, printer, numerical, calibration
-    )
+    batch = SensorBatch.join([batch_of(s, [0.0]) for s in sensors])
+    spread = limit_spread(batch, material, printer, numerical, calibration)
+    empty = any(one.vacuum is not None for one in limits)
+    buckling = limit_spread(batch, material, printer, numerical, calibration, BUCKLING_SLOPE) if empty else spread
     named = [one.named() for one in limits]
-    least = np.array([min((v for name, v in each if name != "gauge range"), default=np.inf) for each in named])
+    lowest = np.array([min((v for name, v in each if name != "gauge range"), default=np.inf) for each in named])
     gauge = np.array([one.gauge for one in limits])
-    rated, measured = (rated_pressure(least, some, gauge).tolist() for some in (spread.standard, spread.measured))
+    rated, measured = (rated_pressure(lowest, some, gauge).tolist() for some in (spread.standard, spread.measured))
     found = []
     for k, factor in enumerate(np.exp(COVERAGE * spread.standard).tolist()):
         # A gauge's range is exact: its own reading sets the driving pressure.
         factors = [1.0 if name == "gauge range" else factor for name, _ in named[k]]
         intervals = [UncertainLimit(n, v, v / f, v * f) for (n, v), f in zip(named[k], factors, strict=True)]
         ordered = tuple(sorted(intervals, key=lambda limit: limit.low))
-        found.append(Rating(rated[k], ordered, measured[k], outside_fit(sensors[k]) is None))
+        least, weaker = limits[k].vacuum, float(np.exp(COVERAGE * buckling.standard[k]))
+        vacuum = None if least is None else UncertainLimit(BUCKLING, least, least * weaker, least / weaker)
+        found.append(Rating(rated[k], ordered, measured[k], outside_fit(sensors[k]) is None, vacuum))
     return found

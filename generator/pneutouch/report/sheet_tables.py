@@ -128,7 +128,7 @@ def filled(sheet: SheetData) -> list[SheetBlock]:
         for state, known in zip(sheet.prediction.filled, sheet.filled_uncertainty, strict=True)
         if state.held is not None
     ]
-    head = ("Injected\nmL", "Pressure\nkPa", "k = 2\nkPa", "Apex outside\nmm", "Held by", "k = 2\nkPa/N", *_PRESSED)
+    head = ("Injected\nmL", "Pressure\nkPa", "k = 2\nkPa", "Apex\noutside\nmm", "Held by", "k = 2\nkPa/N", *_PRESSED)
     title = "By injected gas (mL at ambient pressure) or height"
     return section(title, SheetTable(rows, head, numeric=(0, 1, 2, 3, 5, 6, 7, 8), small=True), level=3) if rows else []
 
@@ -142,6 +142,11 @@ def ratings(sheet: SheetData) -> list[list[str]]:
     gauge = f"{NOT_TESTED}; the pressure gauge ({sheet.gauge.title}) reads to {sheet.gauge.reads_to_kPa:.4g} kPa"
     return [
         ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
+        *(
+            [["Vacuum", f"{sheet.rating.least / KPA:.1f}", "kPa gauge", sheet.rating.vacuum_basis]]
+            if sheet.rating.vacuum
+            else []
+        ),
         ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
         ["Overload force", DASH, "N", NOT_TESTED],
         ["Burst pressure", DASH, "kPa", NOT_TESTED],

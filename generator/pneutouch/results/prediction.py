@@ -279,7 +279,11 @@ class RatingRecord:
     remedy: str | None
     """Advice that would raise the rated pressure; null: none."""
     findings: tuple[RatingFinding, ...]
-    """Driving pressures above the rated pressure."""
+    """Driving pressures above the rated pressure, or below the least one."""
+    least_pressure_kPa: float | None = None
+    """Least driving pressure to be used, below ambient; left out: no driving pressure is, or no dome buckles."""
+    least_pressure_basis: str | None = None
+    """Derivation of the least driving pressure, in words."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.evaluation import evaluate
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.membrane import LIMIT_HEIGHT, pressure, relative_pressure
 from pneutouch.mechanics.models.filling import emptied_to, free_states
 from pneutouch.mechanics.models.membrane import cap_volume
 from pneutouch.mechanics.models.solid import solid_probe, solid_states
+from pneutouch.mechanics.rating import BUCKLING, BUCKLING_SLOPE
 from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.mechanics.solid.banded import softest
-from pneutouch.mechanics.solid.inflate import inflate
+from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from pneutouch.units import KPA, ML
 from tests.mechanics.exact_membrane import inflated
@@ -123,13 +127,44 @@ def test_a_vacuum_goes_down_to_where_the_dome_leaves_its_round_form():
     assert -0.01705 < least < -0.01522
     solid = solid_probe(PAPER).solid
     harmonic = HarmonicSolid(solid)
-    just = emptied_to(PAPER, solid, 0.99 * least).states[-1].unit
+    run = emptied_to(PAPER, solid, 0.99 * least)
+    assert run.states[-1].pressure == pytest.approx(least, rel=2e-3)
+    just = state_at(solid, 0.99 * least, run).unit
     assert all(softest(band).value > 0.0 for band in harmonic.bands(just, tuple(range(1, 9))).values())
     # Where waves are not looked for, the path goes on: two and three waves have become soft on it.
     far = emptied_to(PAPER.replace(waves=0), solid, 1.02 * least).states[-1].unit
     assert [n for n, band in harmonic.bands(far, tuple(range(1, 9))).items() if softest(band).value < 0.0] == [2, 3]
     (state,) = predict("", PAPER, [0.99 * least]).states
     assert state.driving_pressure == 0.99 * least and state.apex_outer < PAPER.dome.shape.outer_radius
+
+
+def buckles_at(sensor):
+    return predict("", sensor.replace(depth=1.0), [-1e-4]).limits.vacuum
+
+
+@pytest.mark.parametrize("ratio", [0.06, 0.1, 0.16, 0.24])
+def test_buckling_follows_the_modulus_and_a_power_of_the_wall_ratio(ratio):
+    """Zoelly's sphere: the second power of a thin wall's ratio; what the rating's interval takes is an upper bound."""
+    one = PAPER.replace(wall_thickness=ratio * PAPER.dome.inner_radius)
+    least, softer = buckles_at(one), buckles_at(one.replace(shear_modulus=0.5 * one.wall.shear_modulus))
+    assert softer == pytest.approx(0.5 * least, rel=2e-3)
+    thicker = buckles_at(one.replace(wall_thickness=1.1 * one.dome.wall_thickness))
+    assert 1.9 < math.log(thicker / least) / math.log(1.1) < BUCKLING_SLOPE
+
+
+def test_a_vacuum_is_rated_below_the_weaker_end_of_buckling():
+    evaluation = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [-12.0, 0.0]})
+    rating = evaluation.rating
+    name, nominal, low, high = rating.vacuum
+    assert name == BUCKLING and nominal == evaluation.prediction.limits.vacuum and low < nominal < high < 0.0
+    assert rating.least == pytest.approx(0.9 * high)
+    assert rating.severity(-0.012) == "warning" and rating.severity(0.99 * rating.least) is None
+    found = [one for one in evaluation.findings_alone if one.rule == "driving"]
+    assert {one.severity for one in found} == {"warning"} and rating.excess(-0.012) in [one.message for one in found]
+
+
+def test_without_a_vacuum_there_is_no_least_pressure():
+    assert evaluate("paper-dome").rating.least == -math.inf
 
 
 @settings(max_examples=12)

@@ -109,10 +109,11 @@ def _held(sensor: Sensor, solid: SolidModel, free: FreeState, rest: FreeState) -
 
 
 def emptied_to(sensor: Sensor, solid: SolidModel, pressure: float) -> Inflation:
-    """The dome emptied to a pressure (MPa) below ambient. Raises UnreachableLoadError where it buckles before."""
-    round_at = partial(_is_round, sensor, solid)
+    """The dome emptied to a pressure (MPa) below ambient, and on to where it buckles, if the sensor's test looks for
+    waves around the axis. Raises UnreachableLoadError where it buckles before."""
+    round_at, to = partial(_is_round, sensor, solid), -np.inf if sensor.protocol.waves else pressure
     # Past its buckling the round dome is no longer followed: the solver may find no equilibrium there.
-    run = inflate(solid, to_pressure=pressure, enough=lambda state: not round_at(state))
+    run = inflate(solid, to_pressure=to, enough=lambda state: not round_at(state))
     run = while_sound(solid, run, round_at, BUCKLED)
     last = run.states[-1].pressure
     if last > pressure:

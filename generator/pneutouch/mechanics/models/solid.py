@@ -164,7 +164,9 @@ def solid_result(
     at = driving_pressures.tolist()
     states = tuple(press(sensor, probe, state_at(probe.solid, p, emptied if p < 0.0 else run), p) for p in at)
     curve = _inflation(probe.solid, replace(run, states=[*emptied.states[:0:-1], *run.states]))
-    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), curve, states)
+    buckled = emptied.states[-1].pressure if emptied.why_no_limit else None
+    limits = replace(_limits(sensor, probe, run), vacuum=buckled)
+    return ModelResult(_limit_point(sensor, run), limits, curve, states)
 
 
 @lru_cache(maxsize=1)

@@ -322,11 +322,14 @@ def limit_spread(
     printer: Printer,
     numerical: float,
     calibration: SensorCalibration | None = None,
+    by_ratio: Array | float | None = None,
 ) -> LimitSpread:
     """Uncertainty of the limit pressure, as by `document.budget`, for n sensors of one resin and printer.
 
-    ``numerical`` is the greatest relative numerical error of the limit pressure; ``calibration``: None without one.
+    ``numerical`` is the greatest relative numerical error of the limit pressure; ``calibration``: None without one;
+    ``by_ratio``: d ln pressure / d ln wall ratio of another limit.
     """
+    slope = wall_slope(batch.wall_ratio) if by_ratio is None else by_ratio
     modulus = material.shear_modulus_MPa
     assert modulus is not None
     coupon = modulus.model_copy(update={"spread": COUPON * modulus.nominal})
@@ -337,18 +340,18 @@ def limit_spread(
         return _standard(
             batch,
             sources(batch, known, printer, near_paper=False, errors=none, numerical=error, calibration=calibration),
+            slope,
         )
 
     measured = material.model_copy(update={"shear_modulus_MPa": coupon})
     return LimitSpread(standard(material), standard(measured))
 
 
-def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array:
+def _standard(batch: SensorBatch, source_list: list[UncertaintySource], by_ratio: Array | float) -> Array:
     """Combined standard uncertainty (n,) of ln limit pressure as in `propagate`, with slopes that are known.
 
     The limit pressure is the modulus times a function of the wall ratio only.
     """
-    by_ratio = wall_slope(batch.wall_ratio)
     slopes = np.zeros((len(INPUTS), len(FIGURES), len(batch)))
     slopes[INPUTS.index("shear_modulus"), LIMIT] = 1.0
     slopes[INPUTS.index("wall_thickness"), LIMIT] = by_ratio

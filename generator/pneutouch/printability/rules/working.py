@@ -8,11 +8,12 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.events import NO_LINE
+from pneutouch.mechanics.rating import BUCKLING
 from pneutouch.parts.glue import GLUES, glues_for
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import KPA, UM
-from pneutouch.wording import data_of
+from pneutouch.wording import data_of, tenths_below
 
 _SOURCES: dict[str, str] = data_of(__file__)
 _OFF = 0.1
@@ -108,7 +109,11 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
 def check_driving(view: PrintView) -> list[Finding]:
     """Findings on a highest driving pressure above the rated pressure or the nominal limit, and on presses that pass
     the range of a gauge that the design names."""
-    return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor), *_unlined(view.sensor)]
+    return (
+        []
+        if view.sensor is None
+        else [*_driven(view.sensor), *_emptied(view.sensor), *_pressed(view.sensor), *_unlined(view.sensor)]
+    )
 
 
 def _unlined(context: SensorContext) -> list[Finding]:
@@ -150,6 +155,17 @@ def _pressed(context: SensorContext) -> list[Finding]:
             None,
         )
     ]
+
+
+def _emptied(context: SensorContext) -> list[Finding]:
+    """Finding on a vacuum beyond the least driving pressure."""
+    rating, least = context.rating, min(state.driving_pressure for state in context.prediction.all_states)
+    if least >= 0.0 or rating.severity(least) is None:
+        return []
+    place = (0.0, 0.0, context.sensor.dome.shape.outer_height)
+    bound = -tenths_below(-rating.least / KPA)
+    fix = f"raise the least of pneumatics.driving_pressures_kPa to {bound:.1f} or more, or thicken the wall"
+    return [Finding("driving", "warning", context.membrane, rating.excess(least), fix, _SOURCES[BUCKLING], place, None)]
 
 
 def _driven(context: SensorContext) -> list[Finding]:
