@@ -97,7 +97,7 @@ def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str
 
 
 _THICK = 0.9
-_TOLERANCE = 5e-3
+TOLERANCE = 5e-3
 _WEDGES = 60
 """Number of wedges of one colour on each side of a graded wall."""
 _BEYOND = 0.1
@@ -115,7 +115,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
 
     grading = assembly.scene.membrane_material.along
     for solid in assembly.solids:
-        loops = section_outline(solid, _TOLERANCE)
+        loops = section_outline(solid, TOLERANCE)
         if not loops:
             continue
         if grading is not None and solid.role == "membrane":

@@ -28,10 +28,11 @@ from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.printability import refuse
 from pneutouch.printability.rulebook import MOULD_INFILL
+from pneutouch.report.assembly_pictures import assembly_pictures
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.mould import mould_section
 from pneutouch.report.pictures import picture, pressed_files, shown
-from pneutouch.report.print_sheet import print_sheet
+from pneutouch.report.print_sheet import print_sheet, steps
 from pneutouch.results.folder import BodyMesh, MouldRecord, SiliconeRecord
 from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
@@ -85,6 +86,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("datasheet")
     sheet = sheet_data(evaluation, input_hash(evaluation))
     files |= datasheet(sheet)
+    files["assembly.svg"] = assembly_pictures(assembly, steps(sheet)).encode()
     if sheet.pressed is not None:
         files |= pressed_files(sheet.pressed, scene.name)
     files["print-sheet.md"] = print_sheet(
