@@ -14,9 +14,11 @@ import typer
 
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
-from pneutouch.cli.complete import assignment, error_in_percent, names
+from pneutouch.cli.complete import assignment, error_in_percent, parameters_of
 from pneutouch.cli.terminal import bar, echo, notify, open_closed_streams, put
 from pneutouch.errors import InputError
+
+parameter = parameters_of(__file__)
 
 app = typer.Typer(
     cls=Commands,
@@ -26,10 +28,7 @@ app = typer.Typer(
     help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
 )
 
-DesignArgument = Annotated[
-    str,
-    typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.", autocompletion=names("designs")),
-]
+DesignArgument = Annotated[str, parameter("design")]
 
 
 def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
@@ -44,78 +43,25 @@ def _keep_calibration(context: typer.Context, name: str | None) -> str | None:
     return name
 
 
-SetOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="TABLE.KEY=VALUE",
-        help="Override a field of the design; may be repeated.",
-        callback=_keep_keys,
-        autocompletion=assignment,
-    ),
-]
-CalibrationOption = Annotated[
-    str | None,
-    typer.Option(
-        "--calibration",
-        metavar="NAME",
-        help="Calibration of the sensor in hand; none: without the design's.",
-        callback=_keep_calibration,
-        autocompletion=names("calibrations"),
-    ),
-]
-AnywhereOption = Annotated[
-    bool,
-    typer.Option(
-        "--contact-anywhere",
-        help="Count an unknown object and place of contact in the interval; short for --set contact.anywhere=true.",
-    ),
-]
-_MODEL_HELP = "Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough)."
-ModelOption = Annotated[
-    str | None, typer.Option("--model", help=_MODEL_HELP, show_default="solid; harmonic for contact off the axis")
-]
-AnswerModelOption = Annotated[str | None, typer.Option("--model", help=_MODEL_HELP, show_default="auto")]
-ToleranceOption = Annotated[
-    str | None,
-    typer.Option(
-        "--tolerance",
-        metavar="PERCENT",
-        help="Numerical error that --model auto must meet, %, such as 2 or 2%; below 1 without % a share.",
-        callback=error_in_percent,
-    ),
-]
-ClosureOption = Annotated[
-    str, typer.Option("--closure", help="Contact closure of the membrane: variational or printed.")
-]
-ClampOption = Annotated[
-    str, typer.Option("--clamp", help="Where the solid is held: base (plane) or flange (as printed).")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
-OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that takes the output folder.")]
-DesignFolderOption = Annotated[
-    Path | None,
-    typer.Option("--out", metavar="DIR", help="Folder of the design file.", show_default="designs in your folder"),
-]
+SetOption = Annotated[list[str] | None, parameter("set", callback=_keep_keys, autocompletion=assignment)]
+CalibrationOption = Annotated[str | None, parameter("calibration", callback=_keep_calibration)]
+AnywhereOption = Annotated[bool, parameter("anywhere")]
+ModelOption = Annotated[str | None, parameter("model")]
+AnswerModelOption = Annotated[str | None, parameter("model", show_default="auto")]
+ToleranceOption = Annotated[str | None, parameter("tolerance", callback=error_in_percent)]
+ClosureOption = Annotated[str, parameter("closure")]
+ClampOption = Annotated[str, parameter("clamp")]
+JsonOption = Annotated[bool, parameter("json")]
+OutOption = Annotated[Path, parameter("out")]
+DesignFolderOption = Annotated[Path | None, parameter("design_folder")]
 
 
-ForOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--for",
-        metavar="FIGURE=VALUE",
-        help="Solve for the driving pressure that gives sensitivity, stiffness or force_range; may be repeated.",
-    ),
-]
-TasksOption = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Solve for the driving pressures of the tasks of a TOML or CSV.")
-]
-LeakOption = Annotated[
-    Path | None, typer.Option(metavar="PATH", help="Measured leak: results of coupons, or of characterize.")
-]
+ForOption = Annotated[list[str] | None, parameter("for")]
+TasksOption = Annotated[Path | None, parameter("tasks")]
+LeakOption = Annotated[Path | None, parameter("leak")]
 
 
-ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design file of this name.")]
+ForceOption = Annotated[bool, parameter("force")]
 
 
 def _version(requested: bool) -> None:
@@ -125,11 +71,7 @@ def _version(requested: bool) -> None:
 
 
 @app.callback()
-def main(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
+def main(version: Annotated[bool, parameter("version", callback=_version)] = False) -> None:
     """Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet."""
 
 
@@ -142,16 +84,8 @@ def predict(
     tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational",
     clamp: ClampOption = "base",
-    monte_carlo: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=0, max=1_000_000, help="Check the uncertainty by N samples; about 0.1 s for 1000 a state."
-        ),
-    ] = 0,
-    aged: Annotated[
-        bool,
-        typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then."),
-    ] = False,
+    monte_carlo: Annotated[int, parameter("monte_carlo")] = 0,
+    aged: Annotated[bool, parameter("aged")] = False,
     anywhere: AnywhereOption = False,
     for_: ForOption = None,
     tasks: TasksOption = None,
@@ -194,15 +128,7 @@ def predict(
 
 
 @app.command("list")
-def list_(
-    kind: Annotated[
-        str | None,
-        typer.Argument(
-            help="designs, specimens, examples, calibrations, materials, mixing, printers, gauges or parts."
-        ),
-    ] = None,
-    json: JsonOption = False,
-) -> None:
+def list_(kind: Annotated[str | None, parameter("kind")] = None, json: JsonOption = False) -> None:
     """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
     from pneutouch.catalogue.listing import listing
     from pneutouch.cli.prediction_text import listing_text

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli import app as cli
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.printability import Finding
     from pneutouch.workflows.build_voxels import VoxelPlan
+
+parameter = parameters_of(__file__)
 
 _FLAGS = {
     "set_": "--set",
@@ -27,26 +29,14 @@ _FLAGS = {
 
 _VOXEL_FLAGS = {"voxels": "--voxels", "voxel_mode": "--voxel-mode"}
 
-VoxelsOption = Annotated[
-    bool, typer.Option("--voxels", help="Write a stack of PNG slices for voxel printing as well, in NAME-voxels.")
-]
-VoxelModeOption = Annotated[
-    str | None,
-    typer.Option("--voxel-mode", metavar="MODE", help="Print mode of the stack, such as 'High Mix'; implies --voxels."),
-]
+VoxelsOption = Annotated[bool, parameter("voxels")]
+VoxelModeOption = Annotated[str | None, parameter("voxel_mode")]
 
 
 @cli.app.command()
 def build(
     context: typer.Context,
-    design: Annotated[
-        str,
-        typer.Argument(
-            metavar="DESIGN",
-            help="Name of a design or specimen, path of a TOML file, or a 3MF that was built.",
-            autocompletion=names("designs", "specimens"),
-        ),
-    ],
+    design: Annotated[str, parameter("design")],
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
     model: cli.ModelOption = None,
@@ -54,9 +44,7 @@ def build(
     closure: cli.ClosureOption = "variational",
     clamp: cli.ClampOption = "base",
     anywhere: cli.AnywhereOption = False,
-    name: Annotated[
-        str | None, typer.Option(help="Name of the output folder and its files.", show_default="the design's")
-    ] = None,
+    name: Annotated[str | None, parameter("name")] = None,
     out: cli.OutOption = Path("outputs"),
     voxels: VoxelsOption = False,
     voxel_mode: VoxelModeOption = None,
@@ -103,8 +91,8 @@ def check(
     design: cli.DesignArgument,
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
-    deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
-    voxels: Annotated[bool, typer.Option("--voxels", help="Check the limits of a voxel stack as well.")] = False,
+    deep: Annotated[bool, parameter("deep")] = False,
+    voxels: Annotated[bool, parameter("check_voxels")] = False,
     json: cli.JsonOption = False,
 ) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""

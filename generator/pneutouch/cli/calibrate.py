@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
 from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
@@ -14,21 +14,15 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.options import CalibrationOptions
 from pneutouch.wording import counted
 
+parameter = parameters_of(__file__)
+
 
 @app.command()
 @with_options(CalibrationOptions)
 @with_fields(Campaign, READING_FIELDS)
 def calibrate(
-    data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
-    design: Annotated[
-        str | None,
-        typer.Option(
-            metavar="DESIGN",
-            help="Design that the sensor was made to.",
-            show_default="the campaign's",
-            autocompletion=names("designs"),
-        ),
-    ] = None,
+    data: Annotated[Path, parameter("data")],
+    design: Annotated[str | None, parameter("design")] = None,
     columns: ColumnsOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,

@@ -9,7 +9,7 @@ import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_answer
 from pneutouch.cli.commands import option
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_words, with_fields
 from pneutouch.cli.terminal import bar, notify, report_next, set_words
 from pneutouch.errors import InputError, PneutouchError
@@ -20,46 +20,24 @@ if TYPE_CHECKING:
     from pneutouch.results.measured import MeasuredCampaign, MeasuredGroup, MeasuredRun
     from pneutouch.workflows.characterize.campaign import CharacterizationResult
 
-
-DesignOption = Annotated[
-    str | None,
-    typer.Option("--design", help="Design of the sensors; left out: the campaign's.", autocompletion=names("designs")),
-]
+parameter = parameters_of(__file__)
 
 
-KindOption = Annotated[
-    str | None,
-    typer.Option(
-        "--kind",
-        metavar="KIND",
-        help=f"Kind of a single run: {', '.join(get_args(RunKind))}.",
-        show_default="by its record",
-    ),
-]
+DesignOption = Annotated[str | None, parameter("design")]
+
+
+KindOption = Annotated[str | None, parameter("kind", help=f"Kind of a single run: {', '.join(get_args(RunKind))}.")]
 
 
 @app.command()
 @with_fields(Campaign, READING_FIELDS)
 def characterize(
     context: typer.Context,
-    data: Annotated[
-        Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
-    ],
+    data: Annotated[Path, parameter("data")],
     design: DesignOption = None,
-    target: Annotated[
-        Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")
-    ] = None,
-    model: Annotated[
-        str | None,
-        typer.Option(
-            "--model",
-            help="Model of the prediction: membrane, atlas, solid, harmonic or auto.",
-            show_default="solid; harmonic for contact off the axis",
-        ),
-    ] = None,
-    evidence: Annotated[
-        str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
-    ] = "doubtful",
+    target: Annotated[Path | None, parameter("target")] = None,
+    model: Annotated[str | None, parameter("model")] = None,
+    evidence: Annotated[str, parameter("evidence")] = "doubtful",
     columns: ColumnsOption = None,
     kind: KindOption = None,
     set_: SetOption = None,

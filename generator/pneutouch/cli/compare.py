@@ -3,25 +3,18 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from pneutouch.cli import app as cli
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import bar, report_next, set_words, table_text
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ComparisonRecord, RowRecord
 
+parameter = parameters_of(__file__)
+
 
 @cli.app.command()
 def compare(
-    things: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="A B...",
-            help="Designs, DESIGN@CALIBRATION, folders of build or characterize.",
-            autocompletion=names("designs"),
-        ),
-    ],
+    things: Annotated[list[str], parameter("things")],
     set_: cli.SetOption = None,
     model: cli.ModelOption = None,
     tolerance: cli.ToleranceOption = None,

@@ -1,12 +1,36 @@
-"""Completion of names and keys after a tab: files of the library are listed and none is read, so it takes no time."""
+"""Options and arguments as files state them, and completion of names and keys after a tab.
+
+To complete a name, files of the library are listed and none is read, so it takes no time.
+"""
 
 from collections.abc import Callable
+from typing import Any
 
 import typer
 
 from pneutouch.cli.terminal import notify
 from pneutouch.errors import InputError
 from pneutouch.spec.values import plain_number
+from pneutouch.wording import data_of
+
+
+def parameters_of(module: str) -> Callable[..., Any]:
+    """A function that makes an option or an argument by its name in the TOML beside ``module``, a ``__file__``.
+
+    An entry holds keywords of Typer, and ``flag``, the option's word, ``names``, the kinds of names that complete it,
+    and ``argument``, true for an argument. The keywords of the function are added to them.
+    """
+    stated = data_of(module)
+
+    def parameter(name: str, **more: Any) -> Any:
+        """The option or argument."""
+        given = stated[name] | more
+        flags = [given.pop("flag")] if "flag" in given else []
+        if "names" in given:
+            given["autocompletion"] = names(*given.pop("names"), listed=given.pop("listed", False))
+        return typer.Argument(**given) if given.pop("argument", False) else typer.Option(*flags, **given)
+
+    return parameter
 
 
 def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:

@@ -4,10 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from pneutouch.cli.app import JsonOption, app, print_answer, print_json
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import words
 from pneutouch.cli.terminal import bar, echo, report_next, table_text
 from pneutouch.results.coupons import CouponReport
@@ -24,49 +22,22 @@ def coupon_names(incomplete: str) -> list[str]:
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
 
+parameter = parameters_of(__file__)
+
 
 _CHOSEN = ("profile", "material", "design", "mixing", "only", "copies")
 
 
 @app.command()
 def coupons(
-    profile: Annotated[
-        str | None,
-        typer.Option(
-            autocompletion=names("printers"),
-            help="Printer to make coupons for.",
-            show_default="the design's, else objet260-connex",
-        ),
-    ] = None,
-    material: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Resin; may be repeated.",
-            show_default="the design's membrane, else TangoPlus",
-            autocompletion=names("materials", listed=True),
-        ),
-    ] = None,
-    mixing: Annotated[
-        list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")
-    ] = None,
-    design: Annotated[
-        str | None,
-        typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.", autocompletion=names("designs")),
-    ] = None,
-    only: Annotated[
-        list[str] | None,
-        typer.Option(help="Coupons, such as puck,dumbbell; left out: all.", autocompletion=coupon_names),
-    ] = None,
-    copies: Annotated[
-        list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")
-    ] = None,
-    results: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Filled results file: writes profiles of your own.")
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results your folder"),
-    ] = None,
+    profile: Annotated[str | None, parameter("profile")] = None,
+    material: Annotated[list[str] | None, parameter("material")] = None,
+    mixing: Annotated[list[str] | None, parameter("mixing")] = None,
+    design: Annotated[str | None, parameter("design")] = None,
+    only: Annotated[list[str] | None, parameter("only", autocompletion=coupon_names)] = None,
+    copies: Annotated[list[str] | None, parameter("copies")] = None,
+    results: Annotated[Path | None, parameter("results")] = None,
+    out: Annotated[Path | None, parameter("out")] = None,
     json: JsonOption = False,
 ) -> None:
     """Make test prints to measure a printer and its resins, or enter what was measured."""

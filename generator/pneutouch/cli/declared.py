@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 from pydantic import BaseModel
 
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import names, parameters_of
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.fields import Declaration, declaration, declarations, entries_of, extra_of, table_of
 from pneutouch.spec.options import AnyOptions, Options, flag_of, options_of
@@ -196,14 +196,7 @@ READING_FIELDS = {
 }
 """Options of the table [format] of a campaign file."""
 
-ColumnsOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--columns",
-        metavar="CHANNEL=NAME[:UNIT]",
-        help="Columns of time, position, force, pressure, volume, such as force=Load:N; -NAME turns the sign.",
-    ),
-]
+ColumnsOption = Annotated[list[str] | None, parameters_of(__file__)("columns")]
 
 
 def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict[str, dict[str, Any]]:

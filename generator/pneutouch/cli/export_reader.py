@@ -5,13 +5,14 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from pneutouch.cli import app as cli
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import bar, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.spec.values import plain_number
+
+parameter = parameters_of(__file__)
 
 
 def simulators(incomplete: str) -> list[str]:
@@ -42,20 +43,8 @@ def export_reader(
     calibration: cli.CalibrationOption = None,
     model: cli.AnswerModelOption = None,
     tolerance: cli.ToleranceOption = None,
-    simulator: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME", help="Write a model for a simulator instead: mujoco or urdf.", autocompletion=simulators
-        ),
-    ] = None,
-    age: Annotated[
-        str | None,
-        typer.Option(
-            metavar="TIME",
-            help="Time since the calibration, or the print, that the uncertainty counts, such as 90d or 1y; left out: "
-            "none since a calibration, else a year.",
-        ),
-    ] = None,
+    simulator: Annotated[str | None, parameter("simulator", autocompletion=simulators)] = None,
+    age: Annotated[str | None, parameter("age")] = None,
     out: cli.OutOption = Path("outputs"),
     json: cli.JsonOption = False,
 ) -> None:

@@ -3,24 +3,20 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
 from pneutouch.spec.options import FitOptions
 
+parameter = parameters_of(__file__)
+
 
 @app.command("fit-material")
 @with_options(FitOptions)
 def fit_material(
-    data: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="DATA...", help="CSV of a test in tension, planar or equibiaxial, or of a puck (--puck)."
-        ),
-    ],
+    data: Annotated[list[Path], parameter("data")],
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
     **options: Any,

@@ -3,42 +3,24 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.printers import makers
 from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import echo, notify, report_next
 from pneutouch.errors import InputError
 from pneutouch.spec.material import Material
 
+parameter = parameters_of(__file__)
+
 
 @app.command()
 def new(
-    name: Annotated[str | None, typer.Argument(help="Name of the new file: letters, digits, - and _.")] = None,
-    from_: Annotated[
-        str | None,
-        typer.Option(
-            "--from",
-            metavar="NAME",
-            help="Copy a design, an example, a printer, a gauge, a material: see pneutouch list.",
-        ),
-    ] = None,
+    name: Annotated[str | None, parameter("name")] = None,
+    from_: Annotated[str | None, parameter("from")] = None,
     set_: SetOption = None,
-    process: Annotated[
-        str | None,
-        typer.Option("--process", metavar="PROCESS", help="How the dome is made: polyjet, filament, resin or casting."),
-    ] = None,
-    material: Annotated[
-        str | None,
-        typer.Option(
-            "--material",
-            metavar="NAME",
-            help="Resin of the dome; left out: the first that the process runs.",
-            autocompletion=names("materials"),
-        ),
-    ] = None,
+    process: Annotated[str | None, parameter("process")] = None,
+    material: Annotated[str | None, parameter("material")] = None,
     out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file, or copy a shipped file."""

@@ -8,6 +8,7 @@ import typer
 
 from pneutouch.cli import app as cli
 from pneutouch.cli.commands import option
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, notify, report_next, table_text
 from pneutouch.errors import PneutouchError
@@ -15,16 +16,15 @@ from pneutouch.results.plan import PlannedCampaign
 from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
 
+parameter = parameters_of(__file__)
+
 
 @cli.app.command()
 @with_options(PlanOptions)
 def plan(
     context: typer.Context,
     design: cli.DesignArgument,
-    rig: Annotated[
-        Path | None,
-        typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
-    ] = None,
+    rig: Annotated[Path | None, parameter("rig")] = None,
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
     out: cli.OutOption = Path("outputs"),

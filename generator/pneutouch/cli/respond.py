@@ -3,34 +3,25 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from pneutouch.cli import app as cli
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import bar, notify, report_next, set_words, table_text
 from pneutouch.results.response import LoadResponse
 
 if TYPE_CHECKING:
     from pneutouch.workflows.respond import Load
 
+parameter = parameters_of(__file__)
+
 
 @cli.app.command()
 def respond(
     design: cli.DesignArgument,
-    step: Annotated[
-        str | None,
-        typer.Option(metavar="SIZE", help="Step to a force or a travel, such as 2N or 3mm; left out: half the range."),
-    ] = None,
-    sine: Annotated[
-        str | None, typer.Option(metavar="HZ", help="Instead of a step: a sine of a frequency, such as 5Hz.")
-    ] = None,
-    peak: Annotated[
-        str | None,
-        typer.Option(metavar="SIZE", help="Peak of the sine from no load, such as 2N; left out: half the range."),
-    ] = None,
-    duration: Annotated[
-        float | None, typer.Option(metavar="S", help="Length of the record, s; left out: 1 s, or ten cycles.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the gauge's noise.")] = 0,
+    step: Annotated[str | None, parameter("step")] = None,
+    sine: Annotated[str | None, parameter("sine")] = None,
+    peak: Annotated[str | None, parameter("peak")] = None,
+    duration: Annotated[float | None, parameter("duration")] = None,
+    seed: Annotated[int, parameter("seed")] = 0,
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
     model: cli.ModelOption = None,

@@ -6,18 +6,15 @@ from typing import Annotated, Any
 import typer
 
 from pneutouch.cli import app as cli
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, table_text
 from pneutouch.results.scan import ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of
 
-SpecimenArgument = Annotated[
-    str,
-    typer.Argument(
-        metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.", autocompletion=names("specimens")
-    ),
-]
+parameter = parameters_of(__file__)
+
+SpecimenArgument = Annotated[str, parameter("specimen")]
 
 _NOT_SEPARATING = {
     key: f"--{flag_of(ScanOptions, key)}" for key in ("driving_pressures_kPa", "control", "seed", "data")
@@ -29,18 +26,8 @@ _NOT_SEPARATING = {
 def scan(
     context: typer.Context,
     specimen: SpecimenArgument,
-    design: Annotated[
-        str,
-        typer.Option("--design", help="Sensor that scans: name of a design, or path.", autocompletion=names("designs")),
-    ],
-    separate: Annotated[
-        str | None,
-        typer.Option(
-            "--separate",
-            metavar="PITCH@DEPTH,PITCH@DEPTH",
-            help="Instead: rank domes by how well they separate two patterns, mm.",
-        ),
-    ] = None,
+    design: Annotated[str, parameter("design")],
+    separate: Annotated[str | None, parameter("separate")] = None,
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
     out: cli.OutOption = Path("outputs"),

@@ -2,10 +2,11 @@
 
 from typing import Annotated
 
-import typer
-
 from pneutouch.cli.app import JsonOption, app, print_json
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import echo, report_next, table_text
+
+parameter = parameters_of(__file__)
 
 
 def known(incomplete: str) -> list[str]:
@@ -17,13 +18,7 @@ def known(incomplete: str) -> list[str]:
 
 @app.command()
 def schema(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            help="Kind of document, such as design or prediction; left out: all are listed.", autocompletion=known
-        ),
-    ] = None,
-    json: JsonOption = False,
+    name: Annotated[str | None, parameter("name", autocompletion=known)] = None, json: JsonOption = False
 ) -> None:
     """Print the JSON schema (draft 2020-12) of a file that is read or of a document that is written."""
     from pneutouch.schemas import document_kinds, schema_of

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, SetOption, app, design_folder, print_json
-from pneutouch.cli.complete import percent_of
+from pneutouch.cli.complete import parameters_of, percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
 from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
@@ -21,6 +21,8 @@ from pneutouch.spec.values import plain_numbers
 
 if TYPE_CHECKING:
     from pneutouch.workflows.select.search import TargetAnswer
+
+parameter = parameters_of(__file__)
 
 
 def _pressures(text: str) -> list[float]:
@@ -106,22 +108,13 @@ _FLAGS_ALONE = "select"
 @app.command()
 @with_fields(Target, SELECT_FIELDS)
 def select(
-    target: Annotated[
-        Path | None, typer.Argument(metavar="TARGET", help="Target file (TOML); options override it.")
-    ] = None,
-    have: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="What the lab has (TOML): materials, printers, gauges, ports to take from."),
-    ] = None,
+    target: Annotated[Path | None, parameter("target")] = None,
+    have: Annotated[Path | None, parameter("have")] = None,
     set_: SetOption = None,
-    write: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Save the design picked as designs/NAME.toml.")
-    ] = None,
-    pick: Annotated[int, typer.Option(help="Rank of the design to save; its row with --process.")] = 1,
+    write: Annotated[str | None, parameter("write")] = None,
+    pick: Annotated[int, parameter("pick")] = 1,
     overwrite: ForceOption = False,
-    charts: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder for the trade-off and tuning charts, SVG.")
-    ] = None,
+    charts: Annotated[Path | None, parameter("charts")] = None,
     out: DesignFolderOption = None,
     json: JsonOption = False,
     **fields: Any,

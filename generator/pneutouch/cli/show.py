@@ -7,19 +7,18 @@ from typing import Annotated
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_answer, refuse_flags
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import table_text
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
+
+parameter = parameters_of(__file__)
 
 
 @app.command()
 def show(
     context: typer.Context,
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE.3mf", help="A 3MF, ours or not; or the folder of a voxel stack.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of a voxel stack's sections.")
-    ] = None,
+    file: Annotated[Path, parameter("file")],
+    out: Annotated[Path | None, parameter("out")] = None,
     json: JsonOption = False,
 ) -> None:
     """Show a 3MF: its bodies, its metadata and the recipe it was built from. Of a voxel stack: what lies in it."""

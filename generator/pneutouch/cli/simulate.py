@@ -3,27 +3,20 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.wording import counted
 
+parameter = parameters_of(__file__)
+
 
 @app.command()
 @with_options(SimulationOptions)
 def simulate(
-    design: Annotated[
-        str,
-        typer.Argument(
-            metavar="DESIGN",
-            help="Name of a design, path of a TOML file, or the folder of a plan: then every run of the plan.",
-            autocompletion=names("designs"),
-        ),
-    ],
+    design: Annotated[str, parameter("design")],
     set_: SetOption = None,
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),

@@ -7,29 +7,19 @@ import webbrowser
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from pneutouch.cli.app import app
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
+
+parameter = parameters_of(__file__)
 
 
 @app.command()
 def studio(
-    design: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="DESIGN",
-            help="Name of a design, or path of a TOML file.",
-            show_default="paper-dome",
-            autocompletion=names("designs"),
-        ),
-    ] = None,
-    port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Port of 127.0.0.1; 0: a free one.", show_default="free")
-    ] = 0,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
+    design: Annotated[str | None, parameter("design")] = None,
+    port: Annotated[int, parameter("port")] = 0,
+    no_browser: Annotated[bool, parameter("no_browser")] = False,
 ) -> None:
     """Open a page in the browser: change a design and see its drawing, curves and limits. Ctrl-C ends it."""
     try:

@@ -4,10 +4,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json
-from pneutouch.cli.complete import assignment, names
+from pneutouch.cli.complete import assignment, parameters_of
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
@@ -16,47 +14,25 @@ from pneutouch.wording import tenths_below
 if TYPE_CHECKING:
     from pneutouch.workflows.sweep import SweepPlan, SweepResult
 
-
-_MODEL_HELP = "Model; solid, or harmonic off the axis, where neither this nor the file gives one."
+parameter = parameters_of(__file__)
 
 
 @app.command()
 def sweep(
-    file: Annotated[
-        Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list; with --over a design.")
-    ] = None,
-    design: Annotated[
-        str | None,
-        typer.Option("--design", help="Base design, if no sweep file is given.", autocompletion=names("designs")),
-    ] = None,
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--over",
-            metavar="TABLE.KEY=VALUES",
-            help="Vary a field: A,B,C or FROM:TO:COUNT; may be repeated.",
-            autocompletion=assignment,
-        ),
-    ] = None,
+    file: Annotated[Path | None, parameter("file")] = None,
+    design: Annotated[str | None, parameter("design")] = None,
+    over: Annotated[list[str] | None, parameter("over", autocompletion=assignment)] = None,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
-    model: Annotated[str | None, typer.Option("--model", help=_MODEL_HELP)] = None,
-    closure: Annotated[str | None, typer.Option("--closure", help="Contact closure of the membrane.")] = None,
-    clamp: Annotated[str | None, typer.Option("--clamp", help="Where the solid is held: base or flange.")] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE.nc", help="Dataset; left out: outputs/<name>.nc.")
-    ] = None,
-    workers: Annotated[int | None, typer.Option("--workers", help="Processes; left out: one a core.")] = None,
-    scheduler: Annotated[
-        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on this Dask cluster.")
-    ] = None,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="Forget progress and replace another sweep's dataset.")
-    ] = False,
-    yes: Annotated[bool, typer.Option("--yes", help="Compute also more than ten million points.")] = False,
-    charts: Annotated[
-        Path | None, typer.Option("--charts", metavar="DIR", help="Folder for contour maps over two fields.")
-    ] = None,
+    model: Annotated[str | None, parameter("model")] = None,
+    closure: Annotated[str | None, parameter("closure")] = None,
+    clamp: Annotated[str | None, parameter("clamp")] = None,
+    out: Annotated[Path | None, parameter("out")] = None,
+    workers: Annotated[int | None, parameter("workers")] = None,
+    scheduler: Annotated[str | None, parameter("scheduler")] = None,
+    fresh: Annotated[bool, parameter("fresh")] = False,
+    yes: Annotated[bool, parameter("yes")] = False,
+    charts: Annotated[Path | None, parameter("charts")] = None,
     json: JsonOption = False,
 ) -> None:
     """Predict a grid or a list of designs into one dataset (netCDF)."""

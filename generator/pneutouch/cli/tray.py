@@ -3,10 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json
-from pneutouch.cli.complete import assignment, names
+from pneutouch.cli.complete import assignment, parameters_of
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 from pneutouch.results.tray import TrayRecord
@@ -15,34 +13,16 @@ from pneutouch.wording import counted
 if TYPE_CHECKING:
     from pneutouch.workflows.tray.order import TrayOrder
 
+parameter = parameters_of(__file__)
+
 
 @app.command()
 def tray(
-    what: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="TRAY.toml | DESIGN...",
-            help="Tray file, or names or paths of designs.",
-            autocompletion=names("designs"),
-        ),
-    ],
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--over",
-            metavar="TABLE.KEY=VALUES",
-            help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file.",
-            autocompletion=assignment,
-        ),
-    ] = None,
-    copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,
-    profile: Annotated[
-        str | None,
-        typer.Option(
-            "--profile", help="Printer; left out: the file's, or the membrane's.", autocompletion=names("printers")
-        ),
-    ] = None,
-    marks: Annotated[str | None, typer.Option("--marks", help="engraved, raised or none.")] = None,
+    what: Annotated[list[str], parameter("what")],
+    over: Annotated[list[str] | None, parameter("over", autocompletion=assignment)] = None,
+    copies: Annotated[int | None, parameter("copies")] = None,
+    profile: Annotated[str | None, parameter("profile")] = None,
+    marks: Annotated[str | None, parameter("marks")] = None,
     set_: SetOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
