@@ -16,6 +16,7 @@ from pneutouch.cli.terminal import notify
 from pneutouch.errors import ComputationError, InputError, PneutouchError, nearest, one_line
 from pneutouch.spec.values import plain_number
 from pneutouch.stopping import refuse_stopped
+from pneutouch.wording import data_of
 
 
 def with_plain_numbers(command: Any) -> Any:
@@ -48,34 +49,9 @@ class CommandEntry(NamedTuple):
     summary: str
 
 
-COMMANDS: dict[str, dict[str, CommandEntry]] = {
-    "Design": {
-        "new": CommandEntry("new", "Write a commented design file, or copy a shipped file."),
-        "list": CommandEntry("app", "List designs, materials, printers, parts and the like."),
-        "select": CommandEntry("select", "Find designs for a target."),
-        "predict": CommandEntry("app", "Predict the figures and their uncertainty."),
-        "check": CommandEntry("build", "Check printability and mechanical limits."),
-        "compare": CommandEntry("compare", "Show designs next to one another, with what differs."),
-        "sweep": CommandEntry("sweep", "Predict a grid or a list of designs into one dataset."),
-        "studio": CommandEntry("studio", "Open a page in the browser: change a design, see its curves."),
-    },
-    "Make": {
-        "build": CommandEntry("build", "Build everything: print files, prediction, datasheet."),
-        "tray": CommandEntry("tray", "Lay many sensors out on one tray of a printer."),
-        "coupons": CommandEntry("coupons", "Make test prints, or enter what was measured on them."),
-        "fit-material": CommandEntry("fit_material", "Fit a law to a tensile or puck test: a material of your own."),
-        "show": CommandEntry("show", "Show what a 3MF or a voxel stack holds."),
-        "schema": CommandEntry("schema", "Print the JSON schema of a file or a document."),
-    },
-    "Measure": {
-        "plan": CommandEntry("plan", "Plan a measurement campaign: every run and step."),
-        "simulate": CommandEntry("simulate", "Simulate a campaign: records with known truth."),
-        "characterize": CommandEntry("characterize", "Turn measured runs into figures; compare with prediction."),
-        "calibrate": CommandEntry("calibrate", "Fit the model to the runs of one sensor."),
-        "export-reader": CommandEntry("export_reader", "Write the sensor's pressure-to-force model for a machine."),
-        "respond": CommandEntry("respond", "Simulate a step or a sine of force: signal and bandwidth."),
-        "scan": CommandEntry("scan", "Scan a texture with a sensor: signals and their spectrum."),
-    },
+COMMANDS = {
+    group: {name: CommandEntry(**entry) for name, entry in entries.items()}
+    for group, entries in data_of(__file__).items()
 }
 """The commands in the order of the help; a command's module loads when it is used."""
 
