@@ -140,12 +140,8 @@ _TURN = 22.0 * KPA
 class ModelDeviation:
     """Relative deviations of a specimen's force and pressure rise, drawn independently; none by default."""
 
-    common: float = parameter(
-        0.0, "1", "standard deviation of the share that is the same at every driving pressure and travel"
-    )
-    smooth: float = parameter(
-        0.0, "1", "standard deviation of the share that varies along the travel and with the driving pressure"
-    )
+    common: float = parameter("common")
+    smooth: float = parameter("smooth")
 
     def deviated(self, curves: PressCurves, rng: "np.random.Generator") -> PressCurves:
         """Curves of one specimen with the deviations that ``rng`` draws for it; unchanged if there are none."""

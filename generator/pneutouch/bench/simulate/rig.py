@@ -1,8 +1,8 @@
 """The simulated rig: noise, drift, play and ranges of its instruments, scatter of runs, and memory of the wall.
 
-Each parameter is declared once, with unit, default and reason. The wall's memory is a standard linear solid on the
-curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure rise. No Prony data of TangoPlus
-or its digital materials are published: shares and times are the simulator's own.
+Each parameter is declared once, with unit, default and reason, in the TOML file beside this module. The wall's memory
+is a standard linear solid on the curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure
+rise. No Prony data of TangoPlus or its digital materials are published: shares and times are the simulator's own.
 """
 
 import io
@@ -19,11 +19,24 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.simulation import ParameterValue
 from pneutouch.texture.sliding import NOISE, STEP
 from pneutouch.units import GAUGE_LIMIT, KPA
+from pneutouch.wording import data_of
+
+MINUTE = 60.0
+
+_STATED = data_of(__file__)
+"""Value, unit and reason of each parameter, by name."""
+
+_SCALES = {"kPa": KPA, "kPa/min": KPA / MINUTE, "N/min": 1.0 / MINUTE, "1/min": 1.0 / MINUTE}
+"""Values inside the program of the units that parameters are stated in."""
 
 
-def parameter(default: Any, unit: str, reason: str) -> Any:
-    """Dataclass field in an internal unit, with the reason for its default."""
-    return field(default=default, metadata={"unit": unit, "reason": reason})
+def parameter(name: str, default: float | None = None) -> Any:
+    """Dataclass field in an internal unit, with the reason for its default; None: the default stated in the file."""
+    stated = _STATED[name]
+    if default is None:
+        value = stated["value"]
+        default = tuple(value) if isinstance(value, list) else value * _SCALES.get(stated.get("in"), 1.0)
+    return field(default=default, metadata={"unit": stated["unit"], "reason": stated["reason"]})
 
 
 def parameters(model: Any) -> dict[str, ParameterValue]:
@@ -47,35 +60,12 @@ _LEAST_WALL = 0.05
 class ScatterModel:
     """Differences between specimens and between runs; internal units."""
 
-    modulus: float = parameter(
-        0.04,
-        "ln",
-        "standard deviation of the modulus' logarithm: hardness spread of the paper's Table 1 (TangoPlus 1.0 Shore A) "
-        "times Gent's slope, 0.042 at Shore A 27.6",
-    )
-    wall: float = parameter(
-        0.10, "mm", "greatest deviation of the wall, even within: accuracy of the PolyJet machine (printprofiles)"
-    )
-    dead_volume: float = parameter(
-        20.0,
-        "mm3",
-        "most extra air behind a specimen, even from none: 4 mm of a 2.5 mm bore, how far a tube is pushed on; our "
-        "choice",
-    )
-    ageing: float = parameter(
-        0.0,
-        "ln/year",
-        "change of the modulus' logarithm in the first year; set from the resin's hardness by Gent's relation",
-    )
-    gain: float = parameter(
-        0.002, "1", "standard deviation of a run's gain on the pressure rise: paper, Table S1, 0.0051 of 2.547 kPa/N"
-    )
-    reset: float = parameter(
-        0.05 * KPA,
-        "MPa",
-        "standard deviation of the driving pressure each time it is set: our choice, a hand regulator; "
-        "its effect upon the curve, under 0.1 % of the sensitivity, is left to the gain",
-    )
+    modulus: float = parameter("modulus")
+    wall: float = parameter("wall")
+    dead_volume: float = parameter("dead_volume")
+    ageing: float = parameter("ageing")
+    gain: float = parameter("gain")
+    reset: float = parameter("reset")
 
     @classmethod
     def none(cls) -> "ScatterModel":
@@ -124,8 +114,6 @@ def stiffened(sensor: Sensor, factor: float) -> Sensor:
     return sensor.replace(shear_modulus=sensor.wall.shear_modulus * factor, law=law)
 
 
-_ASSUMED = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
-
 _RATE = 50.0
 """Samples per second at which the memory of a protocol is integrated."""
 
@@ -134,13 +122,9 @@ _RATE = 50.0
 class WallMemory:
     """Wall memory: for each term its shares of force and of pressure rise, and its time constant in s."""
 
-    force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _ASSUMED)
-    rise: tuple[float, ...] = parameter(
-        (0.002, 0.002, 0.002), "1", _ASSUMED + "; less than of the force: the air keeps it"
-    )
-    times: tuple[float, ...] = parameter(
-        (1.0, 10.0, 100.0), "s", _ASSUMED + "; a decade apart, within a relaxation run"
-    )
+    force: tuple[float, ...] = parameter("force")
+    rise: tuple[float, ...] = parameter("rise")
+    times: tuple[float, ...] = parameter("times")
 
     def over(self, values: Array, shares: tuple[float, ...], step: float) -> Array:
         """Contribution of the memory, (n, ...), to relaxed values at equal ``step`` (s) along the first axis."""
@@ -186,55 +170,25 @@ def _hats(travel: Array, nodes: Array) -> Array:
     return weights
 
 
-MINUTE = 60.0
-
-
 @dataclass(frozen=True, slots=True)
 class RigModel:
     """Noise, drift and play of a rig; internal units. Zero offsets are drawn once a run."""
 
-    force_noise: float = parameter(
-        0.02,
-        "N rms",
-        "white noise of a sample before the filter: the resolution of the ATI SI-40-2 (paper, Supplement C), taken "
-        "as rms",
-    )
-    pressure_noise: float = parameter(
-        NOISE, "MPa rms", "white noise of a sample before the filter: one step of the recorder"
-    )
-    pressure_step: float = parameter(
-        STEP, "MPa", "step of the recorder, 16 bits over +-10 V at 50 kPa/V (see texture.sliding)"
-    )
-    cutoff: float = parameter(30.0, "Hz", "first-order low pass on force and pressure alike: our choice")
-    force_range: float = parameter(40.0, "N", "ATI SI-40-2, where its reading stops")
-    pressure_range: float = parameter(
-        GAUGE_LIMIT, "MPa", "SMC PSE543, +-100 kPa, where its reading stops (paper, Supplement C)"
-    )
-    force_drift: float = parameter(0.005 / MINUTE, "N/s", "drift of the force's zero, 0.005 N/min: our choice")
-    temperature: float = parameter(
-        0.01 * KPA / MINUTE,
-        "MPa/s",
-        "drift of the shut-in pressure by warming, 0.01 kPa/min, 2 K in an hour: our choice",
-    )
-    leak: float = parameter(
-        0.0005 / MINUTE,
-        "1/s",
-        "share of the driving pressure lost, 0.05 % a minute: our choice; of the rise none is lost",
-    )
-    backlash: float = parameter(
-        0.03, "mm", "play of the stage: coming out, the reading lags the plate by it; our choice"
-    )
-    position_noise: float = parameter(
-        0.0025, "mm rms", "accuracy of the Aerotech stage (paper, Supplement C), taken as rms"
-    )
-    missed: float = parameter(1e-4, "1", "share of the samples that are missing from the file: our choice")
-    force_zero: float = parameter(0.05, "N", "standard deviation of the force's zero from run to run: our choice")
-    pressure_zero: float = parameter(
-        0.1 * KPA, "MPa", "standard deviation of the pressure's zero from run to run: our choice"
-    )
-    position_zero: float = parameter(
-        0.2, "mm", "standard deviation of the place of first contact: our choice, mounting"
-    )
+    force_noise: float = parameter("force_noise")
+    pressure_noise: float = parameter("pressure_noise", NOISE)
+    pressure_step: float = parameter("pressure_step", STEP)
+    cutoff: float = parameter("cutoff")
+    force_range: float = parameter("force_range")
+    pressure_range: float = parameter("pressure_range", GAUGE_LIMIT)
+    force_drift: float = parameter("force_drift")
+    temperature: float = parameter("temperature")
+    leak: float = parameter("leak")
+    backlash: float = parameter("backlash")
+    position_noise: float = parameter("position_noise")
+    missed: float = parameter("missed")
+    force_zero: float = parameter("force_zero")
+    pressure_zero: float = parameter("pressure_zero")
+    position_zero: float = parameter("position_zero")
 
     @classmethod
     def perfect(cls) -> "RigModel":
