@@ -11,24 +11,15 @@ import types
 import typing
 from collections.abc import Callable, Mapping
 from functools import partial
+from importlib import import_module
 from typing import Any, Literal, Union
 
 from pneutouch.export.reader.render import SCHEMA
 from pneutouch.formats import FORMATS, KEY, format_of
 from pneutouch.results.behaviour import CalibratedBy
-from pneutouch.results.calibration import OutcomeRecord
-from pneutouch.results.comparison import ComparisonRecord
-from pneutouch.results.fit import MaterialFit
-from pneutouch.results.folder import Manifest
-from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.plan import PlannedCampaign
 from pneutouch.results.prediction import PredictionRecord
-from pneutouch.results.response import LoadResponse
-from pneutouch.results.scan import ScanRecord
 from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
-from pneutouch.results.simulation import CampaignTruth
-from pneutouch.results.specimen import SpecimenRecord
-from pneutouch.results.stack import StackRecord
 from pneutouch.schemas.pieces import (
     NUMBER,
     NUMBERS,
@@ -48,6 +39,7 @@ from pneutouch.schemas.pieces import (
 from pneutouch.spec.campaign import Rig
 from pneutouch.spec.contact import SIZES, ContactTable
 from pneutouch.spec.target import Target
+from pneutouch.wording import data_of
 
 _PLAIN: dict[Any, str] = {str: "string", float: "number", int: "integer", bool: "boolean"}
 
@@ -108,9 +100,10 @@ def _of_hint(hint: Any, given: Mapping[str, Schema]) -> Schema:
     return {"type": _PLAIN[hint]} if hint in _PLAIN else {}
 
 
-def _made(name: str, source: type | Callable[[], Schema]) -> Schema:
-    """The schema of the document ``name``, from its record or by the function that makes it."""
-    schema = _of_record(source) if isinstance(source, type) else source()
+def _made(name: str, path: str) -> Schema:
+    """The schema of the document ``name``, from its record at a ``path`` in `results`, or by its function."""
+    module, _, kind = path.partition(".")
+    schema = _of_record(getattr(import_module(f"pneutouch.results.{module}"), kind)) if path else _MAKERS[name]()
     return _with_format(name, schema) if name in FORMATS else schema
 
 
@@ -127,8 +120,8 @@ def _with_format(name: str, schema: Schema) -> Schema:
 def written_kinds() -> dict[str, DocumentKind]:
     """Every kind of document that the program writes, by name."""
     return {
-        name: DocumentKind("JSON", title, where, partial(_made, name, source))
-        for name, (source, title, where) in _DOCUMENTS.items()
+        name: DocumentKind("JSON", title, where, partial(_made, name, path))
+        for name, (path, title, where) in data_of(__file__)["documents"].items()
     }
 
 
@@ -230,24 +223,11 @@ def _target() -> Schema:
     return record("The target, as a target file has it.", keys, optional=Target.left_out)
 
 
-_DOCUMENTS: dict[str, tuple[type | Callable[[], Schema], str, str]] = {
-    "prediction": (prediction, "A prediction", "`prediction.json` of `build`, `pneutouch predict --json`"),
-    "manifest": (Manifest, "A manifest", "`manifest.json` of every output folder"),
-    "plan": (plan, "A test plan", "`plan.json` of `plan`, `pneutouch plan --json`"),
-    "figures": (
-        MeasuredCampaign,
-        "Measured figures",
-        "`figures.json` of `characterize`, `pneutouch characterize --json`",
-    ),
-    "selection": (selection, "A selection", "`pneutouch select --json`"),
-    "comparison": (ComparisonRecord, "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
-    "calibration-report": (OutcomeRecord, "A calibration's report", "`pneutouch calibrate --json`"),
-    "reader": (reader, "A reader of force", "`reader.json` of `export-reader`"),
-    "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
-    "response": (LoadResponse, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
-    "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
-    "truth": (CampaignTruth, "Truth of a simulated campaign", "`truth.json` of `simulate`"),
-    "specimen-report": (SpecimenRecord, "A built texture specimen", "`specimen.json` of `build`"),
-    "stack": (StackRecord, "A voxel stack", "`stack.json` of every stack for voxel printing"),
-    "exported-design": (exported_design, "A design exported from the studio", "saved by `Export` in the studio"),
+_MAKERS: dict[str, Callable[[], Schema]] = {
+    "prediction": prediction,
+    "plan": plan,
+    "selection": selection,
+    "reader": reader,
+    "exported-design": exported_design,
 }
+"""Functions that make the schemas which do not follow from a record alone."""
