@@ -67,6 +67,8 @@ def _range_event(state: StateRecord) -> str:
     return next((event.kind for event in state.events if event.ends_range), "depth")
 
 
+_STATED = data_of(__file__)
+
 ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 _READ: dict[str, Callable[[Any], Any]] = {
@@ -92,7 +94,7 @@ def _declared(kind: str) -> tuple[SweepVariable, ...]:
             _READ.get(name) or _at(*one.get("read", name).split(".")),
             one.get("text", False),
         )
-        for name, one in data_of(__file__)[kind].items()
+        for name, one in _STATED[kind].items()
     )
 
 
@@ -182,12 +184,7 @@ def _interval(state: SensorState, width: float) -> Interval:
 INTERVAL = "sensitivity_interval_percent"
 """Name of the half width of the sensitivity's interval, which follows from its ends."""
 
-MAPPED = {
-    "sensitivity": ("sensitivity  (kPa/N)", SENSITIVITY_KEY),
-    "force-range": ("greatest force of the range  (N)", "force_range_high_N"),
-    "rated-pressure": ("rated pressure  (kPa)", "rated_pressure_kPa"),
-    "interval": ("interval of the sensitivity, k = 2  (± %)", INTERVAL),
-}
+MAPPED: dict[str, tuple[str, str]] = {name: tuple(pair) for name, pair in _STATED["mapped"].items()}
 """Label and variable of every figure that is mapped, by the name of the map's file."""
 
 FILLED_MAPPED = {"sensitivity": (MAPPED["sensitivity"][0], FILLED_SENSITIVITY)}
@@ -199,23 +196,11 @@ def over_filling(content: Any) -> bool:
     return any(values.attrs.get("key") in FILLINGS for values in content.coords.values())
 
 
-_REASONS = (
-    ("beyond the limit point", "beyond the limit point"),
-    ("plate's edge", "contact reaches the plate's edge"),
-    ('model = "atlas": wall', "wall outside the atlas"),
-    ("must be less than inner_radius_mm", "wall not thinner than the inner radius"),
-    ("too small for the", "too small for the connector"),
-    ("no equilibrium at", "no equilibrium found"),
-    ("internal fault", "internal fault"),
-)
-"""Part of a message, and the words shown for every message that contains it."""
-
-
 def reason_words(message: str) -> str:
     """Short words for a state's message; the same for messages that differ only in numbers."""
-    for part, words in _REASONS:
+    for part, words in _STATED["reasons"].items():
         if part in message:
-            return words
+            return str(words)
     problem = re.sub(r"^(?:[\w./\[\]-]+(?: = [^:]+)?: )+", "", message.split("; ")[0])
     words = re.sub(r"(?<![A-Za-z])-?\d[\d.e+-]*", "…", problem)
     return words if len(words) <= 60 else f"{words[:59].rstrip()}…"
