@@ -5,18 +5,13 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, WithJsonSchema, model_validator
 
 from pneutouch.spec.fields import EntryError, FieldsError, Table, number
+from pneutouch.wording import data_of
 
 ContactKind = Literal["plate", "ball", "cone", "ring", "profile", "edge", "cylinder"]
 
-SIZES: dict[ContactKind, tuple[str, ...]] = {
-    "plate": (),
-    "ball": ("ball_radius_mm",),
-    "cone": ("cone_half_angle_deg", "cone_tip_radius_mm"),
-    "ring": ("ring_radius_mm", "ring_section_radius_mm"),
-    "profile": ("profile_mm",),
-    "edge": ("edge_radius_mm",),
-    "cylinder": ("cylinder_radius_mm",),
-}
+_OBJECTS = data_of(__file__)
+
+SIZES: dict[ContactKind, tuple[str, ...]] = {kind: tuple(one["keys"]) for kind, one in _OBJECTS.items()}
 """Keys that each object needs; those of the plate have defaults."""
 
 LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
@@ -238,22 +233,8 @@ class ContactTable(Table):
     @property
     def label(self) -> str:
         """Object in words, with its sizes; a plate without them."""
-        if self.object == "ball":
-            return f"ball of {self.ball_radius_mm:g} mm radius"
-        if self.object == "edge":
-            return f"edge of a bar, rounded to {self.edge_radius_mm:g} mm"
-        if self.object == "cylinder":
-            return f"lying cylinder of {self.cylinder_radius_mm:g} mm radius"
-        if self.object == "cone":
-            tip, angle = self.cone_tip_radius_mm, self.cone_half_angle_deg
-            return f"cone of {angle:g}° half angle with a tip of {tip:g} mm radius"
-        if self.object == "ring":
-            section = self.ring_section_radius_mm
-            return f"ring of {self.ring_radius_mm:g} mm radius and {section:g} mm section radius"
-        if self.object == "profile":
-            widest = max(corner[0] for corner in self.profile_mm or [])
-            return f"body of {2 * widest:g} mm diameter with its own profile"
-        return "flat plate"
+        widest = max((corner[0] for corner in self.profile_mm or ()), default=0.0)
+        return str(_OBJECTS[self.object]["label"]).format(**self.sizes(), diameter_mm=2 * widest)
 
     @property
     def hold(self) -> str:

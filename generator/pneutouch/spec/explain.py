@@ -14,6 +14,8 @@ from pneutouch.spec.fields import EntryError, declaration, entries_of, is_one_of
 from pneutouch.spec.values import Quantity
 from pneutouch.wording import counted, data_of
 
+_WORDS: dict[str, dict[str, str]] = data_of(__file__)
+
 _MOST_KEYS = 8
 """Greatest number of keys that a message shows as a table's form; a larger table is looked up."""
 
@@ -127,21 +129,9 @@ def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
 
 def _expected(detail: Any) -> str:
     """Type that a field takes, in words, for an error on the type of a value; empty for other errors."""
-    kinds = {
-        "float_type": "a number ",
-        "int_type": "a whole number ",
-        "finite_number": "a finite number ",
-        "bool_type": "true or false: ",
-        "string_type": "text: ",
-        "model_type": "a table ",
-        "dict_type": "a table ",
-        "date_type": "a date such as 2026-11-21: ",
-        "date_from_datetime_parsing": "a date such as 2026-11-21: ",
-        "date_parsing": "a date such as 2026-11-21: ",
-    }
     if detail["type"] == "string_too_short":
         return f"text of at least {counted(detail['ctx']['min_length'], 'character')}: "
-    return kinds.get(detail["type"], "")
+    return _WORDS["expected"].get(detail["type"], "")
 
 
 _OF_LISTS = ("list_type", "too_short", "too_long")
@@ -208,6 +198,7 @@ def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
 
 def _plain(problem: str) -> str:
     """The parser's message in words that a user of the file understands; unchanged if there are none."""
-    known = data_of(__file__)
-    beginnings = known["beginning"].items()
-    return known["whole"].get(problem) or next((plain for one, plain in beginnings if problem.startswith(one)), problem)
+    beginnings = _WORDS["beginning"].items()
+    return _WORDS["whole"].get(problem) or next(
+        (plain for one, plain in beginnings if problem.startswith(one)), problem
+    )
