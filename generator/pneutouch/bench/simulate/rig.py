@@ -30,7 +30,7 @@ _SCALES = {"kPa": KPA, "kPa/min": KPA / MINUTE, "N/min": 1.0 / MINUTE, "1/min": 
 """Values inside the program of the units that parameters are stated in."""
 
 
-def parameter(name: str, default: float | None = None) -> Any:
+def parameter(name: str, default: Any = None) -> Any:
     """Dataclass field in an internal unit, with the reason for its default; None: the default stated in the file."""
     stated = _STATED[name]
     if default is None:
