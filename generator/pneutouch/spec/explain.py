@@ -198,7 +198,5 @@ def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
 
 def _plain(problem: str) -> str:
     """The parser's message in words that a user of the file understands; unchanged if there are none."""
-    beginnings = _WORDS["beginning"].items()
-    return _WORDS["whole"].get(problem) or next(
-        (plain for one, plain in beginnings if problem.startswith(one)), problem
-    )
+    whole, beginnings = _WORDS["whole"], _WORDS["beginning"].items()
+    return whole.get(problem) or next((plain for one, plain in beginnings if problem.startswith(one)), problem)
