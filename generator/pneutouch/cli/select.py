@@ -3,6 +3,7 @@
 import shlex
 import sys
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,10 +15,10 @@ from pneutouch.cli.complete import parameters_of, percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
 from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.selection import GradedRecord
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_numbers
+from pneutouch.wording import data_of
 
 if TYPE_CHECKING:
     from pneutouch.workflows.select.search import TargetAnswer
@@ -35,34 +36,15 @@ def _pressures(text: str) -> list[float]:
 _PERCENT = "PERCENT"
 """Metavar of an option in per cent."""
 
+_PARSERS: dict[str, Callable[[str], Any]] = {
+    "tolerance": partial(percent_of, parameter="tolerance"),
+    "same_at": _pressures,
+    "same_within": partial(percent_of, parameter="same_within"),
+    "process": lambda text: words([text]),
+}
+
 SELECT_FIELDS = {
-    "sensitivity": FieldOption("target", SENSITIVITY_KEY),
-    "tolerance": FieldOption("target", "tolerance_percent", partial(percent_of, parameter="tolerance"), _PERCENT),
-    "at": FieldOption("target", "driving_pressure_kPa"),
-    "force_range": FieldOption("target", "force_range_N"),
-    "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
-    "stiffness_most": FieldOption("target", "stiffness_most_N_per_mm"),
-    "stiffness_depth": FieldOption("target", "stiffness_depth_mm"),
-    "max_diameter": FieldOption("target", "max_diameter_mm"),
-    "max_footprint": FieldOption("target", "max_footprint_mm"),
-    "fits": FieldOption("target", "fits", metavar="finger:MM"),
-    "inner_radius": FieldOption("given", "inner_radius_mm"),
-    "wall": FieldOption("given", "wall_thickness_mm"),
-    "material": FieldOption("given", "materials"),
-    "mix": FieldOption("given", "mix", metavar="SOFT+STIFF"),
-    "graded": FieldOption("given", "graded"),
-    "same_at": FieldOption("target", "same_sensitivity_at_kPa", _pressures, "KPA,KPA"),
-    "same_within": FieldOption("target", "same_within_percent", partial(percent_of, parameter="same_within"), _PERCENT),
-    "widest_range": FieldOption("target", "widest_range"),
-    "base": FieldOption("setting", "base"),
-    "profile": FieldOption("setting", "profile"),
-    "process": FieldOption("setting", "processes", lambda text: words([text]), "PROCESS,...|any"),
-    "tube_length": FieldOption("setting", "tube_length_mm"),
-    "dead_volume": FieldOption("setting", "dead_volume_mL"),
-    "gauge": FieldOption("setting", "gauge", metavar="NAME|any"),
-    "robustness": FieldOption("weights", "robustness"),
-    "tunability": FieldOption("weights", "tunability"),
-    "contact_anywhere": FieldOption("weights", "contact_anywhere"),
+    name: FieldOption(**field, parse=_PARSERS.get(name)) for name, field in data_of(__file__)["fields"].items()
 }
 """The field of a target file that each option sets, by the option's parameter."""
 
