@@ -8,7 +8,7 @@ import typer
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
-from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words, table_text
 from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.options import CalibrationOptions
@@ -56,22 +56,16 @@ def calibration_text(record: "OutcomeRecord") -> str:
     from pneutouch.workflows.characterize.load import same_failures
 
     rows = [[e.key, f"{e.value:.4g}", _interval(e), f"designed {e.designed:.4g}"] for e in record.estimates]
-    head = (
-        f"{record.sensor}, {record.design}: {counted(record.runs, 'curve')}, "
-        f"{counted(record.injections, 'injection')}, {counted(record.fit.points_used, 'value')}"
+    remarks = (
+        [f"warning: {warning}" for warning in record.warnings],
+        [f"note: {note}" for note in record.notes],
+        [f"not used: {files}: {why}" for files, why in same_failures(record.failures)],
+        [f"written: {path}" for path in record.written],
     )
-    chi = record.fit.chi_squared_per_degree
-    parts = [
-        head,
-        table_text([], rows),
-        "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
-        _response(record.response),
-        "\n".join(f"warning: {warning}" for warning in record.warnings),
-        "\n".join(f"note: {note}" for note in record.notes),
-        "\n".join(f"not used: {files}: {why}" for files, why in same_failures(record.failures)),
-        "\n".join(f"written: {path}" for path in record.written),
-    ]
-    return "\n\n".join(part for part in parts if part)
+    estimates, response = table_text([], rows), _response(record.response)
+    return filled_text(
+        "calibration.txt.j2", record=record, estimates=estimates, response=response, remarks=remarks, counted=counted
+    )
 
 
 def _response(response: "tuple[FittedResponse, ...]") -> str:

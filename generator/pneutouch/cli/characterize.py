@@ -1,6 +1,6 @@
 """``pneutouch characterize``: measured runs turned into figures, compared with the predicted ones."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
@@ -11,13 +11,13 @@ from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOptio
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_words, with_fields
-from pneutouch.cli.terminal import bar, notify, report_next, set_words
+from pneutouch.cli.terminal import bar, filled_text, notify, report_next, set_words
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.campaign import Campaign, RunKind
 from pneutouch.wording import SIMULATED, counted, listed
 
 if TYPE_CHECKING:
-    from pneutouch.results.measured import MeasuredCampaign, MeasuredGroup, MeasuredRun
+    from pneutouch.results.measured import MeasuredCampaign
     from pneutouch.workflows.characterize.campaign import CharacterizationResult
 
 parameter = parameters_of(__file__)
@@ -117,59 +117,20 @@ def measured_text(measured: "MeasuredCampaign", named: Callable[[str], str | Non
     """A table for each group, measured figures with intervals and the prediction; then target, ageing and warnings.
 
     ``named`` gives the option for a parameter of the library."""
-    head = f"{measured.title}: measured on {measured.design}, predicted by {measured.model}"
-    lines = [head + (f"  {SIMULATED}" if measured.simulated else "")]
-    for group in measured.groups:
-        lines += ["", *_group(group)]
-    for entry in measured.target:
-        word = {True: "met", False: "NOT met", None: "not decided"}[entry.passed]
-        lines.append(f"\ntarget {word}: {entry.what}: required {entry.required}, measured {entry.measured}")
-    for change in measured.ageing:
-        lines.append(
-            f"\nageing: {change.resin}, {change.driving_pressure_kPa:g} kPa, {change.age}: "
-            f"{change.sensitivity_change_percent:+.1f} %"
-        )
-    for figure in measured.injections:
-        error = "" if figure.standard_error is None else f" ± {figure.standard_error:.2g}"
-        predicted = "" if figure.predicted is None else f", predicted {figure.predicted:.4g}"
-        lines.append(f"\n{figure.sensor}: {figure.figure} {figure.value:.4g}{error} {figure.unit}{predicted}")
-    told = [f"{run.file} as {run.kind}" for run in measured.runs if run.kind_by_record]
-    if told:
-        lines.append(f"\nkind of run, by the record: {listed(told, _NAMED)}")
-    lines += _warnings(measured.runs)
-    asked = [
-        (entry.file, PneutouchError(entry.question).message(named).removesuffix(".")) for entry in measured.questions
-    ]
-    lines += [f"\nquestion: {file}: {words}{'' if words[-1] == '?' else '.'} The run is used." for file, words in asked]
-    return "\n".join(lines)
-
-
-def _warnings(runs: "Sequence[MeasuredRun]") -> list[str]:
-    """Line with the counts of doubtful parts of records, left out or used; empty without such parts."""
-    every = [warning for run in runs for warning in run.warnings if warning.kind != "note"]
-    left = sum(not warning.used for warning in every)
-    if not every:
-        return []
-    words = f"{counted(left, 'doubtful part')} of the records left out, {len(every) - left} noted and used"
-    return [f"\n{words}; see figures.json and evidence/"]
-
-
-def _group(group: "MeasuredGroup") -> list[str]:
     from pneutouch.bench.figures import BY_KEY
 
-    lines = [f"{group.resin}, {group.age}, {group.driving_pressure_kPa:g} kPa: {', '.join(group.sensors)}"]
-    depth, whole = group.depth_mm, group.predicted_range_mm
-    if depth and whole and abs(depth / whole - 1) > _SHALLOWER:
-        lines.append(f"  predicted at the depths measured, to {depth:.3g} mm; `predict` goes to {whole:.3g} mm")
-    if depth is None:
-        lines.append("  by hand: lines over even forces; over even travels, as with a plate, they have other slopes")
-    if group.why_not_predicted:
-        lines.append(f"  not predicted: {group.why_not_predicted}")
-    for key, entry in group.figures.items():
-        figure = BY_KEY[key]
-        interval = "" if entry.low is None else f"{entry.low:.4g} to {entry.high:.4g}"
-        line = f"  {figure.name:<48} {entry.value:>9.4g}  {interval:<22} {figure.unit}"
-        if entry.predicted is not None:
-            line += f"  (predicted {entry.predicted.value:.4g})"
-        lines.append(line.rstrip())
-    return lines
+    told = [f"{run.file} as {run.kind}" for run in measured.runs if run.kind_by_record]
+    return filled_text(
+        "measured.txt.j2",
+        measured=measured,
+        mark=SIMULATED,
+        shallower=_SHALLOWER,
+        figures=BY_KEY,
+        told=listed(told, _NAMED),
+        doubtful=[warning for run in measured.runs for warning in run.warnings if warning.kind != "note"],
+        questions=[
+            (entry.file, PneutouchError(entry.question).message(named).removesuffix("."))
+            for entry in measured.questions
+        ],
+        counted=counted,
+    )

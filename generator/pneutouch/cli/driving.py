@@ -6,17 +6,8 @@ from typing import Any
 
 import typer
 
-from pneutouch.cli.terminal import bar, echo, put, report_next, set_words, table_text
-from pneutouch.results.driving import (
-    DrivingRecord,
-    FigureReach,
-    MissedTask,
-    PressureInterval,
-    ReachedTask,
-    TaskGas,
-    TaskRecord,
-    UnknownLeak,
-)
+from pneutouch.cli.terminal import bar, echo, filled_text, put, report_next, set_words, table_text
+from pneutouch.results.driving import DrivingRecord, MissedTask, PressureInterval, ReachedTask, TaskGas, TaskRecord
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
 from pneutouch.wording import tenths_below
 
@@ -77,11 +68,6 @@ _MINUTE, _HOUR = 60.0, 3600.0
 
 def schedule_text(record: DrivingRecord) -> str:
     """The answer: the reach of the pressure, a table of the tasks, and remarks on each."""
-    lines = [
-        f"{record.design}: model {record.model}, rated pressure {tenths_below(record.rated_pressure_kPa):.1f} kPa, "
-        f"computed to {record.highest_kPa:.1f} kPa ({record.limit})"
-    ]
-    lines += [_reach(name, record.reach[name]) for name in dict.fromkeys(task.requirement for task in record.tasks)]
     head = [
         "task",
         "required",
@@ -93,10 +79,17 @@ def schedule_text(record: DrivingRecord) -> str:
         "1 % is",
         "holds it",
     ]
-    lines += ["", table_text(head, [_row(task) for task in record.tasks]), ""]
-    for task in record.tasks:
-        lines += _unreached(task) if isinstance(task, MissedTask) else _notes(task, record)
-    return "\n".join([*lines, *_legend(record)])
+    return filled_text(
+        "schedule.txt.j2",
+        record=record,
+        figures=list(dict.fromkeys(task.requirement for task in record.tasks)),
+        table=table_text(head, [_row(task) for task in record.tasks]),
+        titled=_titled,
+        band=_band,
+        names=_NAMES,
+        units=_UNITS,
+        below=tenths_below,
+    )
 
 
 def _required(task: TaskRecord) -> str:
@@ -105,18 +98,6 @@ def _required(task: TaskRecord) -> str:
 
 def _titled(task: TaskRecord) -> str:
     return f"{task.task}: {_required(task)}" if task.task else _required(task)
-
-
-def _reach(figure: str, reach: FigureReach | None) -> str:
-    if reach is None:
-        return f"{_NAMES[figure]}: not known at any driving pressure"
-    within = ""
-    if reach.rated_low is not None:
-        within = f"; up to the rated pressure {reach.rated_low:.4g} to {reach.rated_high:.4g}"
-    return (
-        f"{_NAMES[figure]} by pressure: {reach.low:.4g} (at {reach.low_at_kPa:.3g} kPa) to {reach.high:.4g} "
-        f"(at {reach.high_at_kPa:.3g} kPa) {_UNITS[figure]}{within}"
-    )
 
 
 def _row(task: ReachedTask | MissedTask) -> list[str]:
@@ -150,55 +131,3 @@ def _time(gas: TaskGas) -> str:
     if seconds < 2 * _MINUTE:
         return f"{seconds:.0f} s"
     return f"{seconds / _MINUTE:.0f} min" if seconds < 2 * _HOUR else f"{seconds / _HOUR:.1f} h"
-
-
-def _notes(task: ReachedTask, record: DrivingRecord) -> list[str]:
-    """Warnings on a task that is reached, and its further solutions."""
-    required = _titled(task)
-    first, *others = task.solutions
-    lines = []
-    if first.above_rating:
-        rated = f"{tenths_below(record.rated_pressure_kPa):.1f} kPa"
-        lines.append(
-            f"warning: {required}: {first.driving_pressure_kPa:.2f} kPa is above the rated pressure of {rated}"
-        )
-    if others:
-        also = ", ".join(f"{one.driving_pressure_kPa:.2f}" for one in others)
-        lines.append(f"{required}: also at {also} kPa; the lowest is taken")
-    if first.band is not None and (first.band.open_low or first.band.open_high):
-        advice = "calibrate it (pneutouch calibrate), then repeat with --calibration"
-        if record.is_calibrated:
-            advice = "calibrate it with more runs, at driving pressures near this one"
-        elif not record.is_fitted:
-            advice = "measure it (pneutouch characterize): no calibration covers such a sensor"
-        lines.append(
-            f"{required}: its uncertainty exceeds what pressure can correct: the sensor in hand may not reach it; "
-            f"{advice}"
-        )
-    return lines
-
-
-def _unreached(task: MissedTask) -> list[str]:
-    """Lines on a task that is not reached: pressures at which it may be, and changes by which it would be."""
-    lines = [f"{_titled(task)}: no driving pressure gives it"]
-    if task.possible_band is not None:
-        lines.append(f"  within the uncertainty the sensor in hand may have it at {_band(task.possible_band)} kPa")
-    for one in task.offline:
-        change = f"{one.what} {one.before:.4g} to {one.after:.4g}"
-        lines.append(f"  to change offline: {change}, which gives {one.predicted:.4g} {_UNITS[task.requirement]}")
-    return lines if task.offline else [*lines, "  no single dimension within a factor of 2 gives it: see select"]
-
-
-def _legend(record: DrivingRecord) -> list[str]:
-    """Meaning of the columns, and the basis of their numbers."""
-    leak = record.leak
-    lines = [
-        f"inject: air at ambient pressure ({record.ambient_pressure_kPa:g} kPa) into the vented sensor, dead volume "
-        f"{record.dead_volume_mL:.3f} mL; a regulator is set to the driving pressure instead",
-        f"kPa/K: change of the sealed pressure with temperature at {record.temperature_C:g} C; "
-        "1 %: change of the driving pressure that changes the figure by 1 %",
-    ]
-    if isinstance(leak, UnknownLeak):
-        return [*lines, f"how long a sealed cavity holds it is not known: {leak.unknown} with --leak"]
-    rate = f"{leak.rate_kPa_per_min:.3g} kPa/min at {leak.at_kPa:.3g} kPa"
-    return [*lines, f"holds it: until the leak ({rate}, {leak.measured}) has changed the figure by 1 %"]

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import parameters_of
-from pneutouch.cli.terminal import bar, notify, table_text
+from pneutouch.cli.terminal import bar, filled_text, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.spec.values import plain_number
@@ -91,34 +91,7 @@ def _export_simulator(
 
 def reader_text(record: ReaderRecord) -> str:
     """The box of values in which a reader is valid, and its difference from the full model."""
-    box, known, rated_kPa = record.box, record.difference, record.rating.driving_pressure_kPa
-    relative, calibration = record.grid.force_uncertainty_relative, record.calibration
-    low, high = box.driving_pressure_kPa
-    lines = [
-        f"{record.design}: force from pressure, by the model {record.model}"
-        + (f", calibration {calibration}" if calibration else ", not calibrated"),
-        f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated_kPa:.4g} kPa",
-        f"  contact            {record.conditions.contact}",
-        f"  contact force      0 to {box.contact_force_N[1]:.4g} N, to {box.indentation_mm[1]:.4g} mm of travel",
-        f"  pressure rise      0 to {box.pressure_rise_kPa[1]:.4g} kPa",
-        f"  ambient pressure   {box.ambient_pressure_kPa[0]:.5g} to {box.ambient_pressure_kPa[1]:.5g} kPa",
-        f"  gas temperature    within {box.temperature_change_K:g} K of that at the tare",
-        f"  table to model     {known.nominal_percent:.2f} % of full scale at most in {known.states} states; "
-        f"{known.other_conditions_percent:.2f} % at other temperatures and ambient pressures",
-    ]
-    if relative is None:
-        lines.append(f"  uncertainty        unknown: {record.grid.force_uncertainty_unknown}")
-    else:
-        least, most = (100 * pick(map(pick, relative)) for pick in (min, max))
-        days, since = record.grid.force_uncertainty_age_days, "calibration" if calibration else "print"
-        when = (
-            f"up to {days:.4g} days after its {since}" if days else f"at the age of its {since}, --age 1y adds ageing"
-        )
-        lines += [
-            f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), {when}",
-            "                     noise of the gauge not in it",
-        ]
-    return "\n".join(lines)
+    return filled_text("reader.txt.j2", record=record)
 
 
 def simulator_text(record: SimulatorRecord) -> str:

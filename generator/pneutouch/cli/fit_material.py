@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
+from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
 from pneutouch.spec.options import FitOptions
 
@@ -65,15 +65,4 @@ def fit_text(report: MaterialFit) -> str:
         for fit in report.fits
     ]
     head = ["", "law", "misfit", "constants (MPa; Ogden: mu, alpha), k = 2", ""]
-    specimens = [
-        f"{one.data}: {one.kind}, {one.points} points, slack {one.slack_percent:.2g} %, shear modulus "
-        f"{one.shear_modulus_MPa:.4g} MPa"
-        for one in report.specimens
-    ]
-    lines = [
-        f"{report.material}: {law.label}, within {law.misfit_percent:.2g} % up to a stretch of "
-        f"{report.largest_stretch:.3g}; shear modulus at small strain {report.shear_modulus_small_strain_MPa:.4g} MPa",
-        f"neo-Hookean over the same stretches: {report.shear_modulus_MPa:.4g} MPa",
-        *specimens,
-    ]
-    return "\n\n".join(["\n".join(lines), table_text(head, rows)])
+    return filled_text("fit.txt.j2", report=report, table=table_text(head, rows))

@@ -43,6 +43,15 @@ def put(text: str) -> None:
         raise ComputationError(f"standard output cannot be written: {error.strerror}") from None
 
 
+def filled_text(template: str, **values: Any) -> str:
+    """Text of one of the command line's templates, filled with ``values``; its filter ``f`` formats a value."""
+    from pneutouch.export import templates
+
+    environment = templates(Path(__file__).parent / "templates", autoescape=False)
+    environment.filters["f"] = format
+    return "\n".join(line.rstrip() for line in environment.get_template(template).render(**values).splitlines())
+
+
 def width(stream: TextIO) -> int | None:
     """Columns of the terminal behind a stream; None in a pipe or a file, where lines stay whole."""
     return max(shutil.get_terminal_size().columns, _NARROWEST) if stream.isatty() else None
