@@ -69,7 +69,9 @@ def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = Non
     # `reading` without its docstring: the module that is shipped is the one that is used here.
     source = (HERE / "reading.py").read_text(encoding="utf-8").split('"""', 2)[2].lstrip("\n")
     table = pprint.pformat({key: record[key] for key in _PARTS}, width=118, compact=True)
-    header = _rendered("reader.h.j2", record, c=c, **_header(record))
+    statuses = [{"name": one.name, "value": int(one), "words": WORDS[one.name]} for one in Status]
+    values = {"bytes": table_bytes(record), "half": _half, "below": NOISES, "quiet": QUIET}
+    header = _rendered("reader.h.j2", record, c=c, statuses=statuses, **values)
     files = {
         "reader.schema.json": SCHEMA.read_bytes(),
         f"{c}_reader.h": header,
@@ -106,52 +108,6 @@ def _rendered(template: str, record: Mapping[str, Any], **more: Any) -> bytes:
     environment = templates(HERE / "templates", autoescape=False)
     environment.filters["f32"] = f32
     return environment.get_template(template).render(record=record, **more).encode() + b"\n"
-
-
-def _header(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Sizes and constants of the header, as C writes them."""
-    grid, box, zero = record["grid"], record["box"], record["zero"]
-    rows, gas, relative = (
-        grid["driving_pressure_kPa"],
-        record["gas"]["driving_pressure_kPa"],
-        grid["force_uncertainty_relative"],
-    )
-    columns = len(grid["contact_force_N"][0])
-    shares = len(relative[0]) if relative else 2
-    low, high = box["driving_pressure_kPa"]
-    numbers = {
-        "first": rows[0],
-        "last": rows[-1],
-        "step": (rows[-1] - rows[0]) / (len(rows) - 1),
-        "gas_first": gas[0],
-        "gas_step": (gas[-1] - gas[0]) / (len(gas) - 1),
-        "gauge_low": record["gauge"]["range_kPa"][0],
-        "gauge_high": record["gauge"]["range_kPa"][1],
-        "ambient_low": box["ambient_pressure_kPa"][0],
-        "ambient_high": box["ambient_pressure_kPa"][1],
-        "driving_least": low - box["driving_pressure_margin_kPa"],
-        "driving_most": high,
-        "change": box["temperature_change_K"],
-        "rated": record["rating"]["driving_pressure_kPa"],
-        "below": NOISES,
-        "quiet": QUIET,
-        "noise_least": zero["noise_least_kPa"],
-        "noise_most": zero["noise_most_kPa"],
-        "filter": zero["filter_s"],
-        "drift_rate": zero["drift_rate_kPa_per_s"],
-        "drift_most": zero["drift_most_kPa"],
-    }
-    return {
-        **{key: f32(value) for key, value in numbers.items()},
-        "rows": len(rows),
-        "columns": columns,
-        "shares": shares,
-        "gas": len(gas),
-        "half": _half(columns - 1),
-        "gas_half": _half(len(gas) - 1),
-        "bytes": table_bytes(record),
-        "statuses": [{"name": one.name, "value": int(one), "words": WORDS[one.name]} for one in Status],
-    }
 
 
 def table_bytes(record: Mapping[str, Any]) -> int:
