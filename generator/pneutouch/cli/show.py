@@ -10,6 +10,7 @@ from pneutouch.cli.app import JsonOption, app, print_answer, refuse_flags
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import table_text
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
+from pneutouch.spec.toml_text import flat
 
 parameter = parameters_of(__file__)
 
@@ -120,13 +121,7 @@ def _bodies(package: ShownPackage) -> str:
 
 def _recipe(recipe: ShownRecipe) -> list[str]:
     inputs = recipe.inputs
-    design = {key: value for key, value in inputs["design"].items() if not isinstance(value, dict)} | {
-        f"{table}.{key}": value
-        for table, content in inputs["design"].items()
-        if isinstance(content, dict)
-        for key, value in content.items()
-    }
-    design = {key: value for key, value in design.items() if value is not None}
+    design = {key: value for key, value in flat(inputs["design"]).items() if value is not None}
     settings = {key: inputs[key] for key in ("model", "closure", "clamp", "tolerance") if inputs[key] is not None}
     libraries = [f"{name} {version}" for name, version in recipe.versions.items() if name != "pneutouch"]
     made = {

@@ -65,6 +65,13 @@ def _dotted(path: tuple[str, ...]) -> str:
     return ".".join(key_text(key) for key in path)
 
 
+def flat(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of a file by ``table.key``, after those outside its tables by their key."""
+    plain = {key: value for key, value in tables.items() if not isinstance(value, Mapping)}
+    inner = {name: table for name, table in tables.items() if name not in plain}
+    return plain | {f"{name}.{key}": value for name, table in inner.items() for key, value in table.items()}
+
+
 def assignments(changes: Changes) -> list[str]:
     """Changes as texts ``key=value`` for `parse_changes`, a text value unquoted where it reads back unchanged."""
     bare = {v for v in changes.values() if isinstance(v, str) and v == v.strip() and bare_value(v) == v}

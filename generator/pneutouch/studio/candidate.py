@@ -5,7 +5,6 @@ A page state is a base that the page has open, and the fields in which the desig
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,10 +14,9 @@ from pneutouch.errors import InputError
 from pneutouch.output.new import free_name
 from pneutouch.selection import Candidate
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Shelf, Target
-from pneutouch.spec.toml_text import assignments
+from pneutouch.spec.toml_text import assignments, flat
 from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
@@ -134,24 +132,13 @@ def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: L
     if base not in bases:
         raise InputError("unknown design", key="base", value=base)
     file = DesignSource.of(bases[base], library)
-    before, after = _flat(file.changed({})), _flat(design)
+    before, after = (flat(one.model_dump(by_alias=True)) for one in (file.changed({}), design))
     values: dict[str, str | None] = {}
     for name in sorted(before | after):
         value = after.get(name)
         if value != before.get(name):
             values[name] = None if value is None else assignments({name: value})[0].partition("=")[2]
     return Question(base, values, version_of(file))
-
-
-def _flat(design: DesignFile) -> dict[str, Any]:
-    """The values of a design file by ``table.key``, those outside the tables by their key."""
-    content: dict[str, Any] = {}
-    for name, value in design.model_dump(by_alias=True).items():
-        if isinstance(getattr(design, name), Table):
-            content |= {f"{name}.{key}": each for key, each in value.items()}
-        else:
-            content[name] = value
-    return content
 
 
 class CandidateStates:

@@ -28,7 +28,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override, parse_changes, read_toml
 from pneutouch.spec.target import Target
-from pneutouch.spec.toml_text import assignments
+from pneutouch.spec.toml_text import assignments, flat
 from pneutouch.spec.values import plain_name
 from pneutouch.studio.guard import ChangedFileError
 
@@ -98,8 +98,7 @@ def target_form(library: Library, bases: Mapping[str, str]) -> TargetForm:
 def _example_target() -> dict[str, str]:
     """The first shipped target as texts by ``table.key``, as the form sends it."""
     tables = read_toml(next(each for each in examples().values() if each.kind == "target").path)
-    content = {f"{table}.{key}": value for table, fields in tables.items() for key, value in fields.items()}
-    pairs = (text.partition("=") for text in assignments(content))
+    pairs = (text.partition("=") for text in assignments(flat(tables)))
     return {name: value for name, _, value in pairs}
 
 

@@ -43,6 +43,7 @@ from pneutouch.results.comparison import ComparisonRecord
 from pneutouch.results.prediction import CurvePoints
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
 from pneutouch.spec.read import Changes
+from pneutouch.spec.toml_text import flat
 from pneutouch.workflows.compare_measured import (
     PREDICTED_NAMES,
     MeasuredColumn,
@@ -96,16 +97,10 @@ class PredictedColumn:
 
     def _inputs(self) -> dict[str, Any]:
         tables = self.scene.design.model_dump(mode="json", by_alias=True)
-        fields = {
-            f"{table}.{key}": value
-            for table, content in tables.items()
-            if table != "document" and isinstance(content, dict)
-            for key, value in content.items()
-        }
-        top = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+        del tables["document"]
         more = {"model": self.model, "clamp": self.clamp, "dead_volume_mL": self.document["dead_volume_mL"]}
         more |= self._parameters()
-        return {**top, **fields, **{f"prediction.{key}": value for key, value in more.items()}}
+        return flat({**tables, "prediction": more})
 
     def _name(self) -> str:
         calibration = self.scene.design.calibration_name
