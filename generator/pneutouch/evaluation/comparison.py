@@ -27,8 +27,8 @@ from pneutouch.results.comparison import (
     ValueRecord,
 )
 from pneutouch.results.prediction import CurvePoints
-from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, extended
-from pneutouch.wording import rounded
+from pneutouch.results.record import extended
+from pneutouch.wording import data_of, rounded
 
 _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
 """Sources that are one unknown number for all sensors in one resin, of one age."""
@@ -95,10 +95,9 @@ COVERAGE = 2.0
 
 _CLOSE, _EXACT, _DIGITS = 1e-6, 1e-9, 6
 
-CRITERION = (
-    "A difference exceeds its uncertainty where the logarithm of the ratio of two figures is greater than "
-    f"{COVERAGE:g} combined standard uncertainties (k = {COVERAGE:g}, about 95 %; JCGM 100, 5.2.2)."
-)
+_STATED = data_of(__file__)
+
+CRITERION = str(_STATED["criterion"]).format(k=COVERAGE)
 
 
 class FigureColumn(NamedTuple):
@@ -110,18 +109,7 @@ class FigureColumn(NamedTuple):
     of_state: bool = True
 
 
-FIGURES = (
-    FigureColumn("rated_pressure_kPa", "rated pressure", "kPa", of_state=False),
-    FigureColumn("limit_pressure_kPa", "limit pressure", "kPa", of_state=False),
-    FigureColumn(SENSITIVITY_KEY, "sensitivity", "kPa/N"),
-    FigureColumn(STIFFNESS_KEY, "stiffness", "N/mm"),
-    FigureColumn("force_at_range_end_N", "force at the range's end", "N"),
-    FigureColumn("range_end_mm", "end of the range", "mm"),
-    FigureColumn("apex_height_outer_mm", "apex height, outer", "mm"),
-    FigureColumn("saturation_force_N", "saturation force", "N"),
-    FigureColumn("nonlinearity_percent", "nonlinearity", "% of full scale"),
-    FigureColumn("r_squared", "R²", ""),
-)
+FIGURES = tuple(FigureColumn(**figure) for figure in _STATED["figures"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,25 +281,18 @@ def _difference(
 
 def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:
     """Notes on assumptions and on driving pressures that are left out, then the sensors' own."""
-    notes = []
+    notes, words = list[str](), _STATED["notes"]
     predicted = [s for s in sensors if s.resin is not None]
     if len(predicted) > 1 and sensors[0].resin is not None:
         if any(s.resin == sensors[0].resin for s in predicted[1:]):
-            notes.append(
-                "Of sensors in one resin the resin's modulus and ageing are one unknown, so they cancel as far as they "
-                f"act alike; the model's errors correlate by {MODEL_CORRELATION:g}, as between 0 and 22 kPa in one "
-                "resin of the paper's Table S1."
-            )
-        notes.append(
-            "Print, tube, gauge and weather count for each sensor by itself; so do resins and model errors of "
-            "different resins, which do not correlate in Table S1."
-        )
+            notes.append(words["one_resin"].format(correlation=MODEL_CORRELATION))
+        notes.append(words["each_by_itself"])
     if any(s.kind != "measured" for s in sensors):
         if any("calibration" in s.inputs for s in predicted):
-            notes.append("A calibrated prediction is of one specimen, that of a design of any print of it.")
-        notes.append("The model's own error is known for the sensitivity alone: in other figures it is not counted.")
+            notes.append(words["calibrated"])
+        notes.append(words["model_error"])
     if any(s.kind == "measured" for s in sensors):
-        notes.append("A measured interval (95 %) holds the scatter that was seen; it is taken as independent.")
+        notes.append(words["measured"])
     left_kPa = sorted({state.driving_pressure_kPa for s in sensors for state in s.states} - set(pressures_kPa))
     if left_kPa:
         notes.append(f"Not compared, because not all have them: {', '.join(f'{p:g}' for p in left_kPa)} kPa.")
