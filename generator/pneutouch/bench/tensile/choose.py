@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.statistics import neo_hookean
 from pneutouch.bench.tensile.law_fit import (
     RATIOS,
     LawFit,
@@ -359,10 +360,8 @@ def _fit(travel: Array, stress: Array, thickness: float) -> tuple[float, float, 
     if near.sum() < LEAST_POINTS or travel[near].max() < _LEAST * thickness:
         return None
     stretch, nominal = 1.0 - travel[near] / thickness, -stress[near]
-    shape = stretch - stretch**-2
-    modulus = float(shape @ nominal / (shape @ shape))
-    rest = nominal - modulus * shape
-    error = 2.0 * float(np.sqrt(rest @ rest / (nominal.size - 1) / (shape @ shape)))
+    modulus, error = neo_hookean(stretch, nominal)
+    rest = nominal - modulus * (stretch - stretch**-2)
     far = stretch < 1.0 - _LEAST
     misfit = float(np.abs(rest[far] / nominal[far]).max()) if far.any() else np.inf
-    return modulus, error, stretch, nominal, misfit
+    return modulus, 2.0 * error, stretch, nominal, misfit
