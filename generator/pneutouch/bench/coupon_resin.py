@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pneutouch.bench.coupons import MARK, CouponFindings, ReadingSource, rounded
+from pneutouch.bench.coupons import DIGITS, MARK, CouponFindings, ReadingSource
 from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import logarithmic_slope, young_modulus
@@ -15,6 +15,7 @@ from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, Mi
 from pneutouch.spec.grade import MixingPoint
 from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material, density_problem
 from pneutouch.spec.values import Quantity
+from pneutouch.wording import rounded
 
 _SECANT = 0.1
 """Strain of the secant modulus."""
@@ -82,15 +83,15 @@ def _one_year(name: str, material: Material, fresh: float, results: CouponFindin
     kept = aged.model_dump(exclude_none=True, exclude={"low", "high"})
     text = f"hardness {MARK} and a change of {change:+.3g} in a year: {aged.source}"
     results.change(
-        "materials", name, ("shore_a_one_year",), **{**kept, "value": rounded(fresh + change), "source": text}
+        "materials", name, ("shore_a_one_year",), **{**kept, "value": rounded(fresh + change, DIGITS), "source": text}
     )
 
 
 def _add(
     results: CouponFindings, source: ReadingSource, name: str, key: str, value: Mean, how: str, title: str
 ) -> None:
-    text, spread = source.source(how, value.count), rounded(value.spread)
-    results.change("materials", name, (key,), value=rounded(value.value), spread=spread, source=text)
+    text, spread = source.source(how, value.count), rounded(value.spread, DIGITS)
+    results.change("materials", name, (key,), value=rounded(value.value, DIGITS), spread=spread, source=text)
     results.figure(name, title, value.value, value.spread, value.count)
 
 
@@ -143,7 +144,7 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingS
         f"dumbbells {fit.how}; low and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} "
         f"MPa, of the fits {max(fit.errors):.2g} MPa at most{compared}"
     )
-    value, low, high, spread = (rounded(x) for x in (over.value, min(fit.moduli), max(fit.moduli), fit.spread))
+    value, low, high, spread = (rounded(x, DIGITS) for x in (over.value, min(fit.moduli), max(fit.moduli), fit.spread))
     text, keys = source.source(how, over.count), ("shear_modulus_MPa",)
     results.change("materials", name, keys, value=value, low=low, high=high, spread=spread, source=text)
     results.figure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count)
@@ -225,8 +226,8 @@ class MixModulus:
         """Point of a mixing curve, not validated: the curve's file is checked as a whole."""
         return MixingPoint.model_construct(
             fraction=self.fraction,
-            shear_modulus_MPa=rounded(self.modulus),
-            shear_modulus_spread_MPa=rounded(self.spread),
+            shear_modulus_MPa=rounded(self.modulus, DIGITS),
+            shear_modulus_spread_MPa=rounded(self.spread, DIGITS),
             source=source.source(self.how, self.count),
         )
 

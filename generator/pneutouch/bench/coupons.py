@@ -20,9 +20,13 @@ from pneutouch.spec.coupon import FeatureGauge, GaugeSize, LeakCap, VolumePlug
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, FeatureSize, Printer
 from pneutouch.units import ML
+from pneutouch.wording import rounded
 
 MARK = "measured on coupons"
 """Part of the source of every quantity that was measured on a coupon."""
+
+DIGITS = 4
+"""Significant digits of a measured quantity: more than a reading has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +69,6 @@ class ReadingSource:
     def source(self, how: str, count: int) -> str:
         """The source of a measured quantity."""
         return f"{MARK}: {how}; n = {count}; {self.lab}, {self.date.isoformat()}"
-
-
-def rounded(value: float) -> float:
-    """Round to four significant digits, more than a reading has."""
-    return float(f"{value:.4g}")
 
 
 _AXES = ("x", "y", "z")
@@ -152,9 +151,9 @@ def _accuracy(name: str, measured: MeasuredGauges, source: ReadingSource, result
     if not sizes:
         return
     deviations = np.array([mean(size.measured_mm).value - size.nominal_mm for size in sizes])
-    worst = max(rounded(float(np.abs(deviations).max())), _INSTRUMENT)
+    worst = max(rounded(float(np.abs(deviations).max()), DIGITS), _INSTRUMENT)
     text = source.source("greatest deviation of a length of the step block, 5 to 20 mm; low: least", len(sizes))
-    low = rounded(float(np.abs(deviations).min()))
+    low = rounded(float(np.abs(deviations).min()), DIGITS)
     results.change("printers", name, ("accuracy_mm",), value=worst, low=low, high=worst, source=text)
     results.figure(name, "accuracy, mm", worst, None, len(sizes))
     results.figure(name, "mean deviation of lengths, mm", float(deviations.mean()), None, len(sizes))
@@ -171,7 +170,7 @@ def _holes(name: str, measured: MeasuredGauges, source: ReadingSource, results: 
     smaller = [_smaller(hole, f"{source.where}: gauge.{name}.hole") for hole in holes]
     over = mean(smaller)
     how = "nominal less measured diameter of upright holes; low and high: least and greatest hole"
-    value, low, high, spread = (rounded(x) for x in (over.value, min(smaller), max(smaller), over.spread))
+    value, low, high, spread = (rounded(x, DIGITS) for x in (over.value, min(smaller), max(smaller), over.spread))
     text, keys = source.source(how, over.count), ("hole_undersize_mm",)
     results.change("printers", name, keys, value=value, low=low, high=high, spread=spread, source=text)
     results.figure(name, "holes too small by, mm", over.value, over.spread, over.count)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.bench.coupons import DIGITS
 from pneutouch.bench.tensile.choose import (
     MISFIT,
     NEO_HOOKEAN,
@@ -278,18 +279,13 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
         measured["density_g_per_cm3"] = Quantity(value=facts.density_g_per_cm3, source=f"{given}{_by(fitted)}")
     if facts.shore_a:
         readings = np.asarray(facts.shore_a)
-        spread = _four(float(readings.std(ddof=1))) if readings.size > 1 else None
+        spread = rounded(float(readings.std(ddof=1)), DIGITS) if readings.size > 1 else None
         source = f"{given}, {readings.size} readings{_by(fitted)}"
-        measured["shore_a"] = Quantity(value=_four(float(readings.mean())), spread=spread, source=source)
+        measured["shore_a"] = Quantity(value=rounded(float(readings.mean()), DIGITS), spread=spread, source=source)
     content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
     KINDS["materials"].validate(content, str(fitted.path))
     names = ", ".join(file_name(path.name) for path in fitted.data)
     return whole_head(_COMMAND, names) + toml_text(content)
-
-
-def _four(value: float) -> float:
-    """The value to four significant digits, more than a test has."""
-    return float(f"{value:.4g}")
 
 
 def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:
@@ -332,14 +328,14 @@ def _by(fitted: FittedMaterial) -> str:
 
 
 def _modulus(fitted: FittedMaterial) -> Quantity:
-    neo, value = fitted.neo_hookean, _four(fitted.neo_hookean.constants[0])
+    neo, value = fitted.neo_hookean, rounded(fitted.neo_hookean.constants[0], DIGITS)
     how = f"neo-Hookean fit to a stretch of {fitted.largest:.3g}, misfit {100 * neo.misfit:.3g} %"
     each, kinds = ((), ()) if fitted.choice is None else (fitted.choice.each, fitted.choice.kinds)
     low = high = spread = None
     if len(each) > 1:
-        low, high = _four(min(*each, value)), _four(max(*each, value))
+        low, high = rounded(min(*each, value), DIGITS), rounded(max(*each, value), DIGITS)
         # Kinds of test differ by more than the scatter of specimens.
-        spread = _four(float(np.std(each, ddof=1))) if len(kinds) == 1 else None
+        spread = rounded(float(np.std(each, ddof=1)), DIGITS) if len(kinds) == 1 else None
         how += f"; low, high{' and spread' if spread else ''}: of {len(each)} specimens"
     return Quantity(value=value, low=low, high=high, spread=spread, source=f"{_test(fitted)}: {how}{_by(fitted)}")
 
@@ -352,8 +348,8 @@ def _law(fitted: FittedMaterial) -> HyperelasticLaw:
     return HyperelasticLaw.model_construct(
         name=law.form.name,
         kinds=[] if kinds == ["tension"] else kinds,
-        constants=[_four(constant) for constant in law.constants],
-        largest_stretch=_four(fitted.largest),
+        constants=[rounded(constant, DIGITS) for constant in law.constants],
+        largest_stretch=rounded(fitted.largest, DIGITS),
         misfit_percent=float(f"{100 * law.misfit:.3g}"),
         source=f"{_test(fitted)}: {law.form.label}{slack}; misfit: largest relative difference of nominal stress, "
         f"running mean over 0.1 of stretch, from 10 % strain on{_by(fitted)}",

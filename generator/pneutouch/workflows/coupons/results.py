@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.bench.coupon_resin import MixModulus, dumbbell, puck, stiffness
-from pneutouch.bench.coupons import MARK, CouponFindings, ProfileChange, ReadingSource, gauges, leak, rounded, volume
+from pneutouch.bench.coupons import DIGITS, MARK, CouponFindings, ProfileChange, ReadingSource, gauges, leak, volume
 from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
 from pneutouch.catalogue.mixture import mixing
 from pneutouch.errors import InputError
@@ -22,6 +22,7 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import file_name
+from pneutouch.wording import rounded
 from pneutouch.workflows.coupons.order import resins_of
 
 _COMMAND = "coupons"
@@ -180,7 +181,7 @@ def _changes(path: Path, curve: MixingCurve, pair: str, library: Library) -> tup
             continue
         old = None
         if before is not None and point.fraction <= before.fraction[-1]:
-            old = {"value": rounded(float(before.modulus_at(np.asarray(point.fraction))))}
+            old = {"value": rounded(float(before.modulus_at(np.asarray(point.fraction))), DIGITS)}
         new = {"value": point.shear_modulus_MPa, "source": point.source}
         rows.append(ChangedQuantity(str(path), f"shear_modulus_MPa at {100 * point.fraction:g} %", old, new))
     return tuple(rows)
