@@ -8,7 +8,7 @@ import typer
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.terminal import bar, table_text
+from pneutouch.cli.terminal import bar, filled_text, table_text
 from pneutouch.results.scan import ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of
 
@@ -79,18 +79,8 @@ def scan_text(record: ScanRecord) -> str:
     contacts = table_text(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)
     rows = [[state.label, pattern.name, *_readings(pattern)] for state in record.states for pattern in state.patterns]
     head = ["signal", "pattern", "true Hz", "found Hz", "model Pa", "read Pa", "over noise", "p", ""]
-    first, last = record.path_mm
-    notes = [f"note: {state.label}: {note}" for state in simulated for note in state.notes]
-    return "\n".join(
-        [
-            f"{record.specimen} scanned by {record.design}: {record.preload_N:g} N, "
-            f"{record.control} held, {record.speed_mm_per_s:g} mm/s from {first:.2f} to {last:.2f} mm",
-            *(["", contacts] if states else []),
-            "",
-            table_text(head, rows),
-            *(["", *notes] if notes else []),
-        ]
-    )
+    readings = table_text(head, rows)
+    return filled_text("scan.txt.j2", record=record, simulated=simulated, contacts=contacts, readings=readings)
 
 
 def _readings(pattern: SoughtPattern) -> list[str]:

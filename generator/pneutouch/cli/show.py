@@ -8,7 +8,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_answer, refuse_flags
 from pneutouch.cli.complete import parameters_of
-from pneutouch.cli.terminal import table_text
+from pneutouch.cli.terminal import filled_text, table_text
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
 from pneutouch.spec.toml_text import flat
 
@@ -52,13 +52,6 @@ def show_text(package: ShownPackage) -> str:
 def stack_text(stack: ShownStack) -> str:
     """A voxel stack: its raster, its resins as counted, its bodies as the manifest has them."""
     held = stack.held
-    wide, tall = held["pixels"]
-    x, y, z = held["size_mm"]
-    about = (
-        f"{stack.stack}: {held['layers']} slices of {wide} x {tall} pixels, {x:.2f} x {y:.2f} x {z:.2f} mm; "
-        f"{held['dpi'][0]} x {held['dpi'][1]} dpi, {held['layer_um']:g} um layers"
-    )
-    machine = f"for the {held['printer']} in the mode {held['mode']}" if "printer" in held else ""
     resins = [
         [
             name,
@@ -80,17 +73,12 @@ def stack_text(stack: ShownStack) -> str:
         ]
         for name, body in held["bodies"].items()
     ]
-    return "\n".join(
-        [
-            about,
-            *([machine] if machine else []),
-            "",
-            table_text(["resin", "RGBA", "voxels", "volume mm3", "share"], resins),
-            "",
-            table_text(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
-            "",
-            *(f"assumed: {line}" for line in held.get("assumptions", [])),
-        ]
+    return filled_text(
+        "stack.txt.j2",
+        name=stack.stack,
+        held=held,
+        resins=table_text(["resin", "RGBA", "voxels", "volume mm3", "share"], resins),
+        bodies=table_text(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
     )
 
 

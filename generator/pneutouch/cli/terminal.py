@@ -49,7 +49,8 @@ def filled_text(template: str, **values: Any) -> str:
 
     environment = templates(Path(__file__).parent / "templates", autoescape=False)
     environment.filters["f"] = format
-    return "\n".join(line.rstrip() for line in environment.get_template(template).render(**values).splitlines())
+    text = environment.get_template(template).render(**values).removesuffix("\n")
+    return "\n".join(line.rstrip() for line in text.split("\n"))
 
 
 def width(stream: TextIO) -> int | None:

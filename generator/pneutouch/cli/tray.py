@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import assignment, parameters_of
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, filled_text, notify
 from pneutouch.errors import InputError
-from pneutouch.results.tray import TrayRecord
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ def tray(
     if json:
         print_json(record)
     else:
-        echo(_text(record))
+        echo(filled_text("tray.txt.j2", record=record, counted=counted))
         echo(record.folder)
 
 
@@ -61,14 +60,3 @@ def _order(
 
 def _report(step: str) -> None:
     notify(f"{step} ...")
-
-
-def _text(record: TrayRecord) -> str:
-    """The printer and the parts, then a line for each print job: its resins, and how full it is."""
-    lines = [f"{record.printer}: {counted(record.parts, 'part')}, {record.resin_changes}"]
-    lines += [
-        f"{job.name}: {counted(job.parts, 'part')}, {' + '.join(job.resins)}, {job.mode}, "
-        f"{job.layers} layers, bounding boxes take {job.fill['bounding_boxes']:.1%} of the footprint"
-        for job in record.jobs
-    ]
-    return "\n".join(lines)
