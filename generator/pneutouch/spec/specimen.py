@@ -39,6 +39,13 @@ class Scan(Table):
     speed_mm_per_s: float = number(4.0, unit="mm/s", low=0.001, high=10000, help="Speed along the path.")
 
 
+def _check_one(key: str, value: object, other: str, instead: object) -> None:
+    """Raise ValueError unless one of the keys has a value, and the other None."""
+    if (value is None) == (instead is None):
+        both = "both are" if value is not None else "neither is"
+        raise ValueError(f"exactly one of {key} and {other} must be given; {both}")
+
+
 class Layer(Table):
     """Fields that every [[layer]] has."""
 
@@ -71,9 +78,11 @@ class Layer(Table):
 
     @model_validator(mode="after")
     def _one_period(self) -> "Layer":
-        if (self.period() is None) == (self.target_frequency_Hz is None):
-            both = "both are" if self.period() is not None else "neither is"
-            raise ValueError(f"exactly one of {self.period_key()} and target_frequency_Hz must be given; {both}")
+        _check_one(self.period_key(), self.period(), "target_frequency_Hz", self.target_frequency_Hz)
+        return self
+
+    @model_validator(mode="after")
+    def _ends_beyond_its_start(self) -> "Layer":
         if self.end_mm is not None and self.end_mm <= self.start_mm:
             raise ValueError(f"end_mm = {self.end_mm:g} must be more than start_mm = {self.start_mm:g}")
         return self
@@ -139,11 +148,7 @@ class RandomPhase(Layer):
     def _one_period(self) -> "RandomPhase":
         if self.target_frequency_Hz is not None:
             raise ValueError("a random-phase layer takes target_frequencies_Hz, a list, not target_frequency_Hz")
-        if (self.pitches_mm is None) == (self.target_frequencies_Hz is None):
-            both = "both are" if self.pitches_mm is not None else "neither is"
-            raise ValueError(f"exactly one of pitches_mm and target_frequencies_Hz must be given; {both}")
-        if self.end_mm is not None and self.end_mm <= self.start_mm:
-            raise ValueError(f"end_mm = {self.end_mm:g} must be more than start_mm = {self.start_mm:g}")
+        _check_one("pitches_mm", self.pitches_mm, "target_frequencies_Hz", self.target_frequencies_Hz)
         return self
 
 
@@ -162,11 +167,6 @@ class _Celled(Layer):
     def period_key(self) -> str:
         return "cell_mm"
 
-    def _one_size(self, key: str, value: float | None) -> None:
-        if (value is None) == (self.volume_fraction is None):
-            both = "both are" if value is not None else "neither is"
-            raise ValueError(f"exactly one of {key} and volume_fraction must be given; {both}")
-
 
 class StrutLattice(_Celled):
     """A lattice of round struts."""
@@ -176,7 +176,7 @@ class StrutLattice(_Celled):
 
     @model_validator(mode="after")
     def _one_radius(self) -> "StrutLattice":
-        self._one_size("strut_radius_mm", self.strut_radius_mm)
+        _check_one("strut_radius_mm", self.strut_radius_mm, "volume_fraction", self.volume_fraction)
         return self
 
 
@@ -191,7 +191,7 @@ class MinimalSurface(_Celled):
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "MinimalSurface":
-        self._one_size("thickness_mm", self.thickness_mm)
+        _check_one("thickness_mm", self.thickness_mm, "volume_fraction", self.volume_fraction)
         if self.form == "network" and self.thickness_mm is not None:
             raise ValueError(f"thickness_mm = {self.thickness_mm:g}: a network has none; give volume_fraction")
         return self
