@@ -72,7 +72,7 @@ class RecognisedRuns:
     planned: bool
     read_as: str
     unused: list[str]
-    kinds: tuple[str, ...]
+    kinds: tuple[str, ...] = KINDS
     units: dict[str, list[str]] = field(
         default_factory=lambda: {channel: list(known) for channel, known in UNITS.items()}
     )
@@ -181,7 +181,6 @@ def _planned(given: _Given, report: Report) -> RecognisedRuns:
         planned=True,
         read_as=reading_text(read_as(sources, len(read.runs))),
         unused=[file for file in given.run_files if file not in named],
-        kinds=KINDS,
     )
 
 
@@ -212,7 +211,6 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
         planned=False,
         read_as=reading_text(read_as(sources, len(given.run_files))),
         unused=[file for file in given.files if file not in given.run_files],
-        kinds=KINDS,
     )
 
 
