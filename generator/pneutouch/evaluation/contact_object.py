@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, MOST_CELLS, object_
 from pneutouch.mechanics.solid.object_contact import RIM, first_contact, flat_radius
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.part import ClampedFlange
+from pneutouch.wording import data_of
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.solid.indenter import RigidObject
@@ -191,16 +192,8 @@ def contact_notes(sensor: Sensor, contact: "ContactModel | None") -> tuple[str, 
     """Notes on the uncertainty under a contact; empty if ``contact`` is None, for a plate without friction."""
     if contact is None:
         return ()
-    notes = [
-        f"{sensor.protocol.other_contact}: the figures and their derivatives by modulus and friction are the solid's, "
-        "the other derivatives those of a plate without friction; what the latter may miss is the source contact "
-        "correction. The error of the model is that of a plate without friction against Table S1, of which the "
-        "friction in those measurements is a part, so that it may count twice (docs/background/uncertainty.md)"
-    ]
-    friction = contact.friction
+    words, friction = data_of(__file__), contact.friction
+    notes = [words["by_solid"].format(contact=sensor.protocol.other_contact)]
     if friction is not None and not np.isfinite(friction.standard).any(axis=0).all():
-        notes.append(
-            "the solid found no equilibrium at another coefficient of friction, whose uncertainty is then not in the "
-            "budget"
-        )
+        notes.append(words["no_equilibrium"])
     return tuple(notes)

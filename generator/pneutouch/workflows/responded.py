@@ -14,7 +14,7 @@ from pneutouch.results.record import plain
 from pneutouch.results.response import LoadResponse, StateResponse
 from pneutouch.tables.csv_table import columns_csv
 from pneutouch.units import KPA
-from pneutouch.wording import rounded
+from pneutouch.wording import data_of, rounded
 from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
 
 _DIGITS = 6
@@ -25,10 +25,7 @@ _MOST_ROWS = 20000
 _LOWEST = 0.1
 """Lowest frequency in the chart of the gain, Hz."""
 
-CHAIN = (
-    "slow press: the predicted curve; wall, gas and line linear about half of the load, with the compliance there",
-    "the wall relaxes by the data of its resin where there are any; else it is elastic",
-)
+CHAIN = tuple(data_of(__file__)["chain"])
 
 
 def responded(run: RespondRun) -> LoadResponse:

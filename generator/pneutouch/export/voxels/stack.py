@@ -21,13 +21,13 @@ from pneutouch.formats import check_format
 from pneutouch.results.stack import BodyVoxels, DitherRecord, ResinVoxels, StackRecord
 from pneutouch.spec.files import read_bytes
 from pneutouch.units import UM
+from pneutouch.wording import data_of
 
 MANIFEST = "stack.json"
 
-METHOD = (
-    "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for "
-    "beneath"
-)
+_WORDS = data_of(__file__)
+
+METHOD = str(_WORDS["method"])
 
 SHORT = 1e-3
 """Difference of fractions over a body above which a warning says that the request is not met."""
@@ -111,14 +111,7 @@ def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]
 
 def _assumptions(job: VoxelJob) -> tuple[str, ...]:
     lines = [f"{body.solid.name}: {body.blend.assumed}" for body in job.bodies if body.blend.assumed]
-    return (
-        *lines,
-        "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor "
-        "states neither",
-        "colours stand for resins by this file alone; the operator maps them in the utility",
-        "a voxel is of the body that its centre lies in",
-        "a voxel of a mixed body with a neighbour outside it stays the soft resin",
-    )
+    return (*lines, *_WORDS["assumptions"])
 
 
 _MOST_BYTES = 100_000_000

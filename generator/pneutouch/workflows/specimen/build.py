@@ -28,6 +28,7 @@ from pneutouch.results.record import plain
 from pneutouch.shape.meridian import lines_around
 from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
+from pneutouch.wording import data_of
 from pneutouch.workflows.specimen.draw import ResolvedSpecimen, SpecimenBodies, draw, load_specimen
 from pneutouch.workflows.specimen.sheet import drawing_svg, sheet, specimen_record
 
@@ -39,6 +40,8 @@ BONDED = frozenset({"walls", "pins"})
 
 _MOST_CHECKED = 40_000
 """Number of triangles up to which a body is measured by rays; more take a minute or longer."""
+
+_HINTS: dict[str, str] = data_of(__file__)
 
 _JOB = "specimen"
 
@@ -71,13 +74,7 @@ def block_of(drawn: SpecimenBodies) -> PrintSubject:
 
 
 def _item(drawn: SpecimenBodies, body: Body) -> PrintItem:
-    hints = {
-        "walls": "raise width_mm, height_mm or depth_mm of the layer, or the pitch",
-        "pins": "raise width_mm or strut_radius_mm of the layer",
-        "envelope": "take a smaller block, or another print.profile",
-        "resins": "take another material, or another print.profile",
-    }
-    return PrintItem(body, drawn.scene.printer, drawn.scene.mode, job=_JOB, hints=hints)
+    return PrintItem(body, drawn.scene.printer, drawn.scene.mode, job=_JOB, hints=_HINTS)
 
 
 def _joint(drawn: SpecimenBodies) -> Joint:
