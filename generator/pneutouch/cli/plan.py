@@ -54,7 +54,6 @@ def plan(
 
 def plan_text(plan: "PlannedCampaign") -> str:
     """The tests with their times, and for each resin and driving pressure the last point that is predicted."""
-    tests = _tests(plan)
     rows = []
     for resin in plan.resins:
         for state in resin.states:
@@ -63,15 +62,9 @@ def plan_text(plan: "PlannedCampaign") -> str:
             cells = [f"{getattr(known[-1], key):.2f}" for key in keys] if known else ["-"] * 3
             rows.append([resin.resin, f"{state.driving_pressure_kPa:g}", *cells, resin.model])
     runs, sensors = counted(len(plan.runs), "run"), counted(len(plan.sensors), "specimen")
-    return "\n".join(
-        [
-            f"{plan.design}: {runs} on {sensors}, {plan.total_s / 3600:.1f} h on {plan.rig['name']}",
-            "",
-            table_text(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
-            "",
-            table_text(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows),
-        ]
-    )
+    head = f"{plan.design}: {runs} on {sensors}, {plan.total_s / 3600:.1f} h on {plan.rig['name']}"
+    tests = table_text(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], _tests(plan))
+    return "\n\n".join([head, tests, table_text(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows)])
 
 
 def _tests(plan: "PlannedCampaign") -> list[list[str]]:
