@@ -54,13 +54,9 @@ ClampOption = Annotated[str, parameter("clamp")]
 JsonOption = Annotated[bool, parameter("json")]
 OutOption = Annotated[Path, parameter("out")]
 DesignFolderOption = Annotated[Path | None, parameter("design_folder")]
-
-
 ForOption = Annotated[list[str] | None, parameter("for")]
 TasksOption = Annotated[Path | None, parameter("tasks")]
 LeakOption = Annotated[Path | None, parameter("leak")]
-
-
 ForceOption = Annotated[bool, parameter("force")]
 
 

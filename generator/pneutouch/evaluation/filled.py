@@ -16,8 +16,8 @@ from pneutouch.errors import ComputationError, InputError
 from pneutouch.evaluation.evaluate import Evaluation, fillings_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import DIGITS, NOTHING, TREND, values_of
-from pneutouch.mechanics.atlas.figures import FIGURES, moved
-from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, moved, unit_step
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.corrected.figures import state_logs
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.models.choice import stated_error
@@ -25,7 +25,7 @@ from pneutouch.mechanics.models.solid import MODEL
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.mechanics.uncertainty.document import document, text
-from pneutouch.mechanics.uncertainty.propagate import LIMIT, propagate_solved
+from pneutouch.mechanics.uncertainty.propagate import LIMIT, STEP, Derivatives, by_input, combined, from_changes
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.results.record import SENSITIVITY_KEY
@@ -60,7 +60,8 @@ def filled_uncertainties(evaluation: Evaluation) -> tuple[UncertaintyRecord, ...
         numerical={SENSITIVITY_KEY: stated_error("solid", sensor), FIGURES[LIMIT]: LIMIT_DISCRETISATION},
         calibration=scene.calibration,
     )
-    budget = propagate_solved(batch, of_sensor, _solver(sensor, fillings_of(scene), states))
+    solved = _solver(sensor, fillings_of(scene), states)
+    budget = combined(of_sensor, _derivatives(batch, *by_input(batch, of_sensor), solved), None)
     calibrated, records = scene.calibration is not None, []
     for row, state in enumerate(states):
         values = {**values_of(prediction, state), FIGURES[LIMIT]: state.driving_pressure / KPA}
@@ -78,7 +79,7 @@ def _renamed(figures: Mapping[str, Named] | None) -> dict[str, Named]:
 
 
 def _solver(sensor: Sensor, fillings: list[Filling], states: tuple[SensorState, ...]) -> Callable[[str, float], Array]:
-    """Solver for `propagate_solved`: logarithms of the figures of all states with one input of the sensor changed."""
+    """Solver for `_derivatives`: logarithms of the figures of all states with one input of the sensor changed."""
     bare, here = sensor.replace(waves=0), _logs(states, sensor)
 
     def solved(name: str, by: float) -> Array:
@@ -90,6 +91,21 @@ def _solver(sensor: Sensor, fillings: list[Filling], states: tuple[SensorState, 
         return np.hstack([_one(_moved(bare, name, by), filling) for filling in fillings])
 
     return solved
+
+
+def _derivatives(
+    batch: SensorBatch, standard: Array, kurtosis: Array, solved: Callable[[str, float], Array]
+) -> Derivatives:
+    """As `propagate.derivatives`, of n states: ``solved`` gives the logarithms of the figures, (figures, n), with an
+    input (of `INPUTS`) changed by a number as in `moved`, the same for all; NaN for one that it does not find."""
+    near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)
+    small = np.maximum(near, far)
+    here = solved(INPUTS[0], 0.0)
+    beside = np.array([[solved(n, s * by) for s in (1.0, -1.0)] for n, by in zip(INPUTS, small.tolist(), strict=True)])
+    beside, ratio = beside - here, (far / small)[:, None, None, None]
+    wide = np.broadcast_to((far >= near)[:, None], kurtosis.shape)
+    steps = np.broadcast_to(small[:, None], kurtosis.shape)
+    return from_changes(here, (beside, steps), (beside * ratio, wide), batch.dead_volume, standard, kurtosis)
 
 
 def _one(sensor: Sensor, filling: Filling) -> Array:

@@ -64,8 +64,7 @@ class FilletedHemisphere(DomeShape):
     @property
     def inner(self) -> tuple[Arc, ...]:
         """The inner half sphere, in two pieces: opposite the fillet and above it."""
-        lean, centre = self._lean, (0.0, 0.0)
-        radius = self.inner_radius
+        lean, centre, radius = self._lean, (0.0, 0.0), self.inner_radius
         return Arc(centre, radius, 0.0, lean, INNER_WALL), Arc(centre, radius, lean, _QUARTER, INNER_WALL)
 
     @property

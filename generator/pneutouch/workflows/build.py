@@ -28,11 +28,11 @@ from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.printability import refuse
 from pneutouch.printability.rulebook import MOULD_INFILL
-from pneutouch.report.assembly_pictures import assembly_pictures
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.mould import mould_section
 from pneutouch.report.pictures import picture, pressed_files, shown
 from pneutouch.report.print_sheet import print_sheet, steps
+from pneutouch.report.section import assembly_pictures
 from pneutouch.results.folder import BodyMesh, MouldRecord, SiliconeRecord
 from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION

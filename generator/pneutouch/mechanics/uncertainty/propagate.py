@@ -5,7 +5,7 @@ Also the derivatives of the figures of many sensors by their inputs, local and o
 Also the uncertainty of the limit pressure alone, without a press, so that thousands of candidates cost little.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -96,25 +96,10 @@ def derivatives(
     for k, ((i, _, rows), found) in enumerate(zip(moves, around, strict=True)):
         if k >= 2 * len(INPUTS):
             ends[i, k % 2][:, rows] = found - here[:, rows]
-    return _from_changes(here, (beside, small), (ends, far >= near), batch.dead_volume, standard, kurtosis)
+    return from_changes(here, (beside, small), (ends, far >= near), batch.dead_volume, standard, kurtosis)
 
 
-def solved_derivatives(
-    batch: SensorBatch, standard: Array, kurtosis: Array, solved: Callable[[str, float], Array]
-) -> Derivatives:
-    """`derivatives` of n states by another model: ``solved`` gives the logarithms of the figures, (figures, n), with an
-    input (of `INPUTS`) changed by a number as in `moved`, the same for all; NaN for one that it does not find."""
-    near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)
-    small = np.maximum(near, far)
-    here = solved(INPUTS[0], 0.0)
-    beside = np.array([[solved(n, s * by) for s in (1.0, -1.0)] for n, by in zip(INPUTS, small.tolist(), strict=True)])
-    beside, ratio = beside - here, (far / small)[:, None, None, None]
-    wide = np.broadcast_to((far >= near)[:, None], kurtosis.shape)
-    steps = np.broadcast_to(small[:, None], kurtosis.shape)
-    return _from_changes(here, (beside, steps), (beside * ratio, wide), batch.dead_volume, standard, kurtosis)
-
-
-def _from_changes(
+def from_changes(
     here: Array,
     beside: tuple[Array, Array],
     ends: tuple[Array, Flags],
@@ -238,35 +223,29 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: "Co
 
     Correlated inputs belong to one joint source. ``contact`` None: a frictionless plate.
     """
-    standard, kurtosis = _by_input(batch, sources)
+    standard, kurtosis = by_input(batch, sources)
     shift = None
     if contact is not None:
         modulus = INPUTS.index("shear_modulus")
         shift = contact.shift(float((np.sqrt(kurtosis[modulus]) * standard[modulus].max(axis=0)).max()))
-    return _combined(sources, derivatives(batch, standard, kurtosis, shift=shift), shift)
-
-
-def propagate_solved(
-    batch: SensorBatch, sources: list[UncertaintySource], solved: Callable[[str, float], Array]
-) -> Budget:
-    """Budget of n states from their sources, as `propagate` but with `solved_derivatives`."""
-    return _combined(sources, solved_derivatives(batch, *_by_input(batch, sources), solved), None)
+    return combined(sources, derivatives(batch, standard, kurtosis, shift=shift), shift)
 
 
 def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]]]) -> list[Budget]:
     """`propagate` for groups of sensors with their own sources, in one call of the atlas, because calls are costly."""
     batches = [batch for batch, _ in groups]
-    spreads = [_by_input(batch, sources) for batch, sources in groups]
+    spreads = [by_input(batch, sources) for batch, sources in groups]
     standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
     sizes = [len(batch) for batch in batches]
     slopes_of = derivatives(SensorBatch.join(batches), standard, kurtosis)
     return [
-        _combined(sources, slopes_of.part(slice(end - size, end)), None)
+        combined(sources, slopes_of.part(slice(end - size, end)), None)
         for (_, sources), size, end in zip(groups, sizes, np.cumsum(sizes), strict=True)
     ]
 
 
-def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: "ContactShift | None") -> Budget:
+def combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: "ContactShift | None") -> Budget:
+    """Budget of n sensors from their sources and derivatives; ``shift`` as in `Budget`."""
     by_source = variances(sources, slopes_of.slopes)
     linear = np.sqrt(variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])
@@ -282,7 +261,7 @@ def variances(sources: list[UncertaintySource], slopes: Array) -> Array:
     return np.stack([source.variance(slopes) for source in sources])
 
 
-def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
+def by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
     """Standard uncertainty of each input by figure (inputs, figures, n), and kurtosis (inputs, n)."""
     size = len(batch)
     second = np.zeros((len(INPUTS), len(FIGURES), size))
