@@ -8,9 +8,11 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.export import templates
 from pneutouch.parts import assemble
 from pneutouch.parts.mould import silicone_batch
+from pneutouch.report import section
 from pneutouch.report.pages import TEMPLATES
 from pneutouch.report.print_sheet import making, making_title
 from tests.conftest import ROOT
+from tests.report.overlaps import overlaps
 
 
 def steps(name, changes=None):
@@ -177,3 +179,36 @@ def test_the_leak_that_is_allowed_is_a_hundredth_of_the_range(evaluated):
     fall_kPa, force_N = (float(text) for text in re.findall(r"([\d.]+) (?:kPa a minute|N\b)", line))
     assert force_N == pytest.approx(0.01 * state.figures.force_high, rel=0.05)
     assert fall_kPa == pytest.approx(force_N * state.figures.sensitivity, rel=0.06)
+
+
+ONE_PIECE = {"seat": "one-piece", "material": "VeroClear", "mount": "robot-50-4-M6", "port": "luer-female"}
+PUT_TOGETHER = {
+    "glued": ("paper-dome", {}),
+    "clamped": ("cast-dome", {"mount": "rear-3xM2", "port": "push-in-4"}),
+    "cast around a ring": ("cast-dome", {"seat": "cast-ring", "mount": "finger-16", "port": "thread-M5"}),
+    "one piece": ("paper-dome", ONE_PIECE),
+    "plain": ("paper-dome", {"mount": "plain"}),
+}
+
+
+@pytest.mark.parametrize("kind", PUT_TOGETHER)
+def test_each_step_that_joins_parts_has_a_picture_under_its_number_at_one_scale(kind, monkeypatch):
+    name, parts = PUT_TOGETHER[kind]
+    changes = {f"connector.{key}": value for key, value in parts.items()}
+    if kind == "one piece":
+        changes["print.connector_profile"] = "objet260-connex"
+    _, lines = steps(name, changes)
+    assembly, drawn = assemble(load_scene(name, changes)), []
+    with overlaps() as (found, _):
+        section.assembly_pictures(assembly, lines)
+    assert found == []
+    monkeypatch.setattr(section, "svg", lambda figure: drawn.append(figure) or "")
+    section.assembly_pictures(assembly, lines)
+    heads = ("Joining", "Port", "Mount", "Airtightness")
+    expected = [f"{k} {text.split(':')[0]}" for k, text in enumerate(lines, 1) if text.split(":")[0] in heads]
+    axes = drawn[0].axes
+    assert [ax.get_title() for ax in axes] == expected and len(expected) == 4 - (kind == "plain")
+    assert len({round(float(ax.viewLim.width), 9) for ax in axes}) == 1
+    for ax in axes:
+        assert ax.viewLim.containsx(ax.dataLim.x0) and ax.viewLim.containsx(ax.dataLim.x1)
+        assert ax.viewLim.containsy(ax.dataLim.y0) and ax.viewLim.containsy(ax.dataLim.y1)

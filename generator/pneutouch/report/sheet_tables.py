@@ -1,6 +1,7 @@
 """Tables of a datasheet: figures that count, performance, ratings, conditions of use, limits and sources."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -253,6 +254,8 @@ def sources(sheet: SheetData) -> list[list[str]]:
         ("Hysteresis at 0 kPa, %", None if m.measured is None else m.measured.hysteresis_percent),
     ]
     rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
+    for above, row in reversed([*pairwise(rows)]):
+        row[2] = "as above" if row[2] == above[2] else row[2]
     shifts = [series.shift for series in m.relaxation if series.shift]
     known = {"relaxation": m.relaxation, "change with temperature": shifts, "Mullins softening": []}
     rows.append(["Not known", DASH, ", ".join(what for what, data in known.items() if not data)])
