@@ -17,6 +17,7 @@ from pneutouch.workflows.build import STEPS, build
 from tests.refusals import refused
 
 FILES = {
+    "assembly.svg",
     "paper-dome.3mf",
     "jobs/paper-dome-connector.3mf",
     "jobs/paper-dome-connector.ini",
