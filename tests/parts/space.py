@@ -6,6 +6,7 @@ import numpy as np
 from manifold3d import Manifold, Mesh64, OpType
 
 from pneutouch.body import Frame, Turned
+from pneutouch.parts.connector import gasket_radii
 from pneutouch.shape.meridian import trace
 
 _FINE = 0.003
@@ -41,6 +42,8 @@ def measured_volume(assembly, solids=None):
     if assembly.scene.seat.family == "cast-ring":
         cuts.append(ring(layout.groove_inner, layout.inner_radius + layout.flange_draft, layout.plate_high, 0.0))
         cuts.append(ring(layout.held_radius, layout.groove_outer, layout.plate_high, 0.0))
+    if layout.gasket:
+        cuts.append(ring(*gasket_radii(layout), layout.plate_high, -layout.flange_thickness))
     if port.engaged:
         rear_frame = Frame((0.0, 0.0, layout.under), (0.0, 0.0, -1.0))
         frame = (

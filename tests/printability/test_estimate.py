@@ -10,7 +10,6 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import assemble
-from pneutouch.parts.assembly import under_ceilings
 from pneutouch.printability import PrintSubject
 from pneutouch.printability.estimate import estimate
 from pneutouch.printability.rulebook import mould_subject
@@ -91,8 +90,8 @@ def test_bodies_of_one_job_are_one_estimate_and_it_is_json():
 
 def test_the_space_under_a_table_is_that_of_its_top_without_the_legs():
     standing = item(table()).body
-    assert under_ceilings(standing, 1.0) == pytest.approx((20 * 20 - 2 * 4 * 4) * 8)
-    assert under_ceilings(standing, -1.0) == pytest.approx(0.0, abs=1e-9)
+    assert standing.under_ceilings(1.0) == pytest.approx((20 * 20 - 2 * 4 * 4) * 8)
+    assert standing.under_ceilings(-1.0) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_mould_is_estimated_with_its_infill():

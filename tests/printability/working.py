@@ -11,7 +11,18 @@ from pneutouch.printability import Finding, PrintSubject, SensorContext, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
 
-WORKING = ("layers", "driving", "freedom", "filling", "bubbles", "inhibition", "glue", "mixing curve")
+WORKING = (
+    "layers",
+    "driving",
+    "freedom",
+    "filling",
+    "bubbles",
+    "inhibition",
+    "glue",
+    "inserts",
+    "gland",
+    "mixing curve",
+)
 """Rules that need a sensor's prediction."""
 
 

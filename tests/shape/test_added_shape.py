@@ -135,7 +135,7 @@ def test_other_shapes_are_drawn_solved_and_pressed(kind):
     assert assembly.bodies[0].bounds[1, 2] == pytest.approx(shape.outer_height, abs=0.02)
     assert evaluation.sensor.protocol.depth == pytest.approx(0.75 * shape.height)
     assert state.figures.sensitivity > 0.0
-    assert assembly.deviation(assembly.bodies[0]) < assembly.scene.mesh_tolerance
+    assert assembly.solids[0].deviation(assembly.bodies[0]) < assembly.scene.mesh_tolerance
 
 
 def test_an_object_stands_on_a_cap_where_it_touches_it():

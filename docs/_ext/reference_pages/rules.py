@@ -24,7 +24,7 @@ GROUPS = {
     "Bodies as they are printed": ("mesh", "contact faces", "envelope", "resins"),
     "Features": ("walls", "pins", "holes", "channels", "gaps", "emboss", "edges"),
     "Support": ("hollows", "cleaning", "matte"),
-    "The membrane and its working": ("layers", "glue", "driving", "mixing curve", "freedom"),
+    "The membrane and its working": ("layers", "glue", "inserts", "gland", "driving", "mixing curve", "freedom"),
     "Casting": ("filling", "bubbles", "inhibition", *MOULD_RULES),
     "On request": (resins.VOXELS, "deep"),
 }

@@ -105,6 +105,14 @@ class Body:
         """The body rotated by 180 degrees about the x axis."""
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 
+    def under_ceilings(self, up: float) -> float:
+        """Space in mm3 between the bed and faces that overhang by more than 45 degrees; ``up`` 1, or -1 if turned
+        over."""
+        areas = 0.5 * np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+        height, downwards = up * self.corners[:, :, 2].mean(axis=1), -up * areas[:, 2]
+        steep = downwards > math.sqrt(0.5) * np.linalg.norm(areas, axis=1)
+        return float(np.sum((downwards * (height - np.min(up * self.vertices[:, 2])))[steep]))
+
     def surface_points(self, parts: int = 4) -> Array:
         """Points (n, 3), mm, of a grid on every triangle, ``parts`` steps along each edge, to measure deviations."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
@@ -305,6 +313,10 @@ class Solid:
         """Distances (n,) of points (n, 3), mm, from the nearest surface of any of its shapes, covered parts too."""
         shapes = [self.base, *self.bores, *(feature.shape for feature in (*self.adds, *self.cuts))]
         return np.asarray(np.min([shape.distance(points) for shape in shapes], axis=0))
+
+    def deviation(self, body: Body) -> float:
+        """Greatest distance in mm of a mesh of the solid from its exact surface, measured on dense points."""
+        return float(self.distance(body.surface_points()).max())
 
     def mesh(self, tolerance: float) -> Body:
         """The body with its print mesh, within ``tolerance`` mm of the exact surface."""

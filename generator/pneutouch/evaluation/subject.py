@@ -21,6 +21,7 @@ from pneutouch.mechanics.rating import Rating, ratings
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.cast_ring import RING
+from pneutouch.parts.connector import seat_area
 from pneutouch.parts.glue import glue_of, glue_surfaces
 from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.measure.mould import LEAVES
@@ -29,6 +30,7 @@ from pneutouch.printability.rules.feature_sizes import ALIKE, CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
 from pneutouch.spec.material import Material, MixByCurve
+from pneutouch.spec.part import ORingStub
 from pneutouch.spec.printer import Printer
 from pneutouch.wording import data_of
 
@@ -57,7 +59,7 @@ def subject_of(assembly: Assembly) -> PrintSubject:
             )
         )
     where = (layout.flange_radius, 0.0, layout.plate_high)
-    area = assembly.seat_area
+    area = seat_area(scene.seat, assembly.solid("connector"))
     joints = [Joint("membrane", "connector", area, where)] if area > 0 else []
     if layout.ring is not None:
         joints.append(Joint(RING, "connector", layout.ring.foot_area, where))
@@ -110,7 +112,7 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
 
     Raises InputError if a detail of the mould has no space.
     """
-    context = replace(context, glued=glued_seat(assembly.scene))
+    context = replace(context, glued=glued_seat(assembly.scene), scene=assembly.scene)
     if assembly.mould is None or context.calibrated:
         findings = check(subject_of(assembly), context)
     else:
@@ -170,13 +172,17 @@ def _ending(key: str, left: list[Finding], thin: list[Finding], scene: ResolvedD
 def _others(scene: ResolvedDesign, key: str) -> Iterator[tuple[str, ResolvedDesign]]:
     """The design with each other shipped part in place of that of ``key``; a port comes with a tube that it takes.
 
-    A user's parts are left out: they must not change a build."""
+    A user's parts are left out: they must not change a build. So are stubs with an O-ring, which need a bore to go
+    into, and mounts with inserts, which need a connector that melts."""
     (table, field), kind = key.split("."), _OTHERS[key]
     chosen, stated, shipped = getattr(scene.design, table), scene.design.pneumatics.tube, Library((shipped_root(),))
     parts = {name: shipped.load(kind, name) for name in sorted(shipped.paths(kind))}
     tubes = {name: shipped.load("tubes", name) for name in shipped.paths("tubes")} if kind == "ports" else {}
     own = {name for name, tube in tubes.items() if tube.title == scene.tube.title}
-    for name in sorted(parts, key=lambda name: not own & set(getattr(parts[name], "tubes", ()))):
+    plain = [
+        name for name, part in parts.items() if not isinstance(part, ORingStub) and not getattr(part, "insert", None)
+    ]
+    for name in sorted(plain, key=lambda name: not own & set(getattr(parts[name], "tubes", ()))):
         if name == getattr(chosen, field) or (kind == "ports" and stated not in (None, *parts[name].tubes)):
             continue
         design = scene.design.model_copy(update={table: chosen.model_copy(update={field: name})})

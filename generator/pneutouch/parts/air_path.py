@@ -1,6 +1,6 @@
 """The air's path from the base plane to the end of the tube, as round ducts in series with volumes connected to them.
 
-Its volume is `internal_volume` plus the tube; the dead volume as drawn follows from it. Also the volume of glue gaps.
+Its volume is `internal_volume` plus the tube; the dead volume as drawn follows from it.
 """
 
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, plug_neck, plug_radius
-from pneutouch.spec.part import CastRing, ClampedFlange, GluedFlange, OnePiece
+from pneutouch.spec.part import ClampedFlange, OnePiece
 
 UNKNOWN_END = 150.0
 """Greatest gas volume, mm3, taken for a gauge whose maker states none: dead-ended tubes of 1.37 mm bore and 0.2 to 2 m
@@ -44,43 +44,30 @@ def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 of the gap inside a clamped flange or around a plug; other gaps are filled with glue."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
-        return _inside_flange(layout)
+        return inside_flange(layout)
     if isinstance(seat, OnePiece):
         bottom, body = layout.under + seat.shoulder_thickness, plug_radius(scene, layout)
         if layout.port_axis is None:
-            return _annulus(body, layout.opening_radius, -bottom)
+            return annulus(body, layout.opening_radius, -bottom)
         neck, step = plug_neck(scene, layout)
-        return _annulus(body, layout.opening_radius, step - bottom) + _annulus(neck, layout.opening_radius, -step)
+        return annulus(body, layout.opening_radius, step - bottom) + annulus(neck, layout.opening_radius, -step)
     return 0.0
 
 
-def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
-    """Volume in mm3 of the gaps filled with glue: around a glued flange, around a cast flange with its ring, or around
-    the shoulder of a plug."""
-    seat = scene.seat
-    if isinstance(seat, CastRing):
-        return _inside_flange(layout) + _annulus(layout.held_radius, layout.groove_outer, layout.flange_thickness)
-    if isinstance(seat, GluedFlange):
-        outside = _annulus(layout.flange_radius, layout.groove_outer, layout.flange_thickness)
-        return _inside_flange(layout) + outside + _draft(layout.flange_radius, -layout.flange_draft, layout)
-    if isinstance(seat, OnePiece):
-        wide = layout.opening_radius + seat.shoulder_width
-        return _annulus(wide - scene.fit_clearance, wide, seat.shoulder_thickness)
-    return 0.0
+def inside_flange(layout: Layout) -> float:
+    """Volume in mm3 of the gap between spigot and flange, and inside a gasket, which begins where the flange does."""
+    upright = annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
+    gasket = annulus(layout.groove_inner, layout.inner_radius + layout.flange_draft, layout.gasket)
+    return upright + draft(layout.inner_radius, layout.flange_draft, layout) + gasket
 
 
-def _inside_flange(layout: Layout) -> float:
-    """Volume in mm3 of the gap between spigot and flange."""
-    upright = _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
-    return upright + _draft(layout.inner_radius, layout.flange_draft, layout)
-
-
-def _draft(radius: float, draft: float, layout: Layout) -> float:
+def draft(radius: float, draft: float, layout: Layout) -> float:
     """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` mm over its height."""
     return math.pi * layout.flange_thickness * abs(draft) * (radius + draft / 3)
 
 
-def _annulus(inner: float, outer: float, height: float) -> float:
+def annulus(inner: float, outer: float, height: float) -> float:
+    """Volume in mm3 between two cylinders about one axis."""
     return math.pi * (outer**2 - inner**2) * height
 
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.air_path import glue_volume, internal_volume
+from pneutouch.parts.air_path import internal_volume
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.space import check_space
-from pneutouch.spec.part import ClampedFlange, OnePiece
+from pneutouch.spec.part import OnePiece
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML
 
@@ -27,15 +27,6 @@ if TYPE_CHECKING:
 
 _MARGIN = 1.0
 """Distance in mm of the bodies from the coordinate planes of the print frame, so that all coordinates are positive."""
-
-
-def under_ceilings(body: Body, up: float) -> float:
-    """Space in mm3 between the bed and faces that overhang by more than 45 degrees; ``up`` 1, or -1 if turned over."""
-    corners = body.vertices[body.triangles]
-    areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    height, downwards = up * corners[:, :, 2].mean(axis=1), -up * areas[:, 2]
-    steep = downwards > math.sqrt(0.5) * np.linalg.norm(areas, axis=1)
-    return float(np.sum((downwards * (height - np.min(up * body.vertices[:, 2])))[steep]))
 
 
 @dataclass(frozen=True)
@@ -97,7 +88,7 @@ class Assembly:
         if self.machine(name)[0].process != "filament":
             return True
         body = next(body for body in self.bodies if body.name == name)
-        return under_ceilings(body, 1.0) <= under_ceilings(body, -1.0)
+        return body.under_ceilings(1.0) <= body.under_ceilings(-1.0)
 
     @cached_property
     def print_offset(self) -> Array:
@@ -105,28 +96,10 @@ class Assembly:
         low = np.min([body.bounds[0] for body in self.bodies], axis=0)
         return np.asarray(np.ceil(_MARGIN - low))
 
-    def deviation(self, body: Body) -> float:
-        """Greatest distance in mm of a body's mesh from its exact surface, measured on dense points."""
-        return float(self.solid(body.name).distance(body.surface_points()).max())
-
-    @property
-    def seat_area(self) -> float:
-        """Area in mm2 of the faces shared by membrane and connector; 0 for a clamped flange."""
-        if isinstance(self.scene.seat, ClampedFlange):
-            return 0.0
-        from pneutouch.parts.connector import SEAT
-
-        return sum(piece.area() for piece in self.solid("connector").meridian.tagged(SEAT))
-
     @cached_property
     def internal_volume(self) -> float:
         """Gas volume between the base plane and the port's mouth, the fitting in place, mm3."""
         return internal_volume(self.scene, self.layout)
-
-    @property
-    def glue_volume(self) -> float:
-        """Volume in mm3 of the gaps to be filled with glue."""
-        return glue_volume(self.scene, self.layout)
 
     @property
     def tube_volume(self) -> float:

@@ -99,7 +99,7 @@ def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
     It opens upwards at 45 degrees, so that the dome is free to bulge.
     """
     inner, high = layout.ring_inner, seat.ring_thickness
-    skirt = layout.plate_high + seat.squeeze * layout.flange_thickness
+    skirt = layout.plate_high + travel(seat, layout)
     return trace(
         (inner, 0.0),
         [
@@ -111,6 +111,16 @@ def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
             ("ring cone", (inner, 0.0)),
         ],
     )
+
+
+def travel(seat: ClampedFlange, layout: Layout) -> float:
+    """Distance in mm by which the screws bring a clamping ring down: the squeeze of the flange and of its gasket."""
+    return seat.squeeze * layout.flange_thickness + seat.gasket_squeeze * layout.gasket
+
+
+def gasket_radii(layout: Layout) -> tuple[float, float]:
+    """Inner and outer radius in mm of a gasket under the flange, as wide as the flange."""
+    return layout.inner_radius + layout.flange_draft, layout.flange_radius
 
 
 def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
@@ -212,6 +222,11 @@ def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
     ]
 
 
+def seat_area(seat: AnySeat, connector: Solid) -> float:
+    """Area in mm2 of the faces shared by membrane and connector; 0 for a clamped flange."""
+    return 0.0 if isinstance(seat, ClampedFlange) else sum(piece.area() for piece in connector.meridian.tagged(SEAT))
+
+
 def _clamping_bores(seat: AnySeat, layout: Layout, undersize: float) -> tuple[Bore, ...]:
     """Blind core holes in the connector for the screws of a clamping ring."""
     if not isinstance(seat, ClampedFlange):
@@ -223,7 +238,7 @@ def _clamping_bores(seat: AnySeat, layout: Layout, undersize: float) -> tuple[Bo
 
 def _clearing_bores(seat: ClampedFlange, layout: Layout, undersize: float) -> tuple[Bore, ...]:
     """Through holes in the clamping ring."""
-    low = layout.plate_high + seat.squeeze * layout.flange_thickness
+    low = layout.plate_high + travel(seat, layout)
     radius = 0.5 * (seat.clearance_diameter + undersize)
     return tuple(Bore(x, y, radius, low, seat.ring_thickness) for x, y in _circle(seat, layout))
 

@@ -4,7 +4,9 @@ from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.spec.part import CastRing, GluedFlange
+from pneutouch.parts.air_path import annulus, draft, inside_flange
+from pneutouch.parts.layout import Layout
+from pneutouch.spec.part import CastRing, GluedFlange, OnePiece
 from pneutouch.spec.printer import Printer
 from pneutouch.wording import data_of
 
@@ -62,6 +64,21 @@ def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | No
     if not isinstance(scene.seat, GluedFlange):
         return None
     return surface_of(scene.printer), surface_of(scene.connector_printer)
+
+
+def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
+    """Volume in mm3 of the gaps filled with glue: around a glued flange, around a cast flange with its ring, or around
+    the shoulder of a plug."""
+    seat = scene.seat
+    if isinstance(seat, CastRing):
+        return inside_flange(layout) + annulus(layout.held_radius, layout.groove_outer, layout.flange_thickness)
+    if isinstance(seat, GluedFlange):
+        outside = annulus(layout.flange_radius, layout.groove_outer, layout.flange_thickness)
+        return inside_flange(layout) + outside + draft(layout.flange_radius, -layout.flange_draft, layout)
+    if isinstance(seat, OnePiece):
+        wide = layout.opening_radius + seat.shoulder_width
+        return annulus(wide - scene.fit_clearance, wide, seat.shoulder_thickness)
+    return 0.0
 
 
 def glue_of(scene: ResolvedDesign) -> str | None:

@@ -42,7 +42,8 @@ class Layout:
     ``under`` is the rearmost face around the axis: ``plate_low``, or lower if the mount has a boss there.
     ``opening_radius`` is the radius of the hole that a plug closes, 0 without a plug. ``port_axis`` is the height of a
     side port, None for a port at the rear. ``flange_draft`` is by how much both sides of a cast flange are wider at its
-    underside than at the base plane. ``ring`` is the ring that the flange is cast around, None without one.
+    underside than at the base plane. ``ring`` is the ring that the flange is cast around, None without one. ``gasket``
+    is the thickness of a gasket under the flange, 0 without one.
     """
 
     shape: DomeShape
@@ -61,6 +62,7 @@ class Layout:
     port_axis: float | None
     flange_draft: float = 0.0
     ring: "RingSize | None" = None
+    gasket: float = 0.0
 
     @property
     def inner_radius(self) -> float:
@@ -113,11 +115,6 @@ class Layout:
         assert self.port_axis is not None
         return self.port_axis - self.port.passage - 0.5
 
-    @property
-    def lowest(self) -> float:
-        """Lowest z of the port or the rear face."""
-        return self.under - self.port.length if self.port_axis is None else self.under
-
 
 def lay_out(scene: ResolvedDesign) -> Layout:
     """Derive the layout of a scene from membrane, seat, mount, port and fits; `check_space` checks whether it fits."""
@@ -138,7 +135,8 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
     ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
     thickness = _plate_thickness(scene, port)
-    low = -deep - thickness
+    gasket = seat.gasket_thickness if isinstance(seat, ClampedFlange) else 0.0
+    low = -deep - gasket - thickness
     side = mount.port_side == "side"
     # The sides of a cast flange widen over its thickness; printed ones are upright.
     draft = math.radians(scene.design.mould.draft_deg) if scene.printer.is_casting else 0.0
@@ -151,7 +149,7 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
         clearance=clearance,
         ring_radius=ring,
         plate_radius=_plate_radius(scene, ring, bolts),
-        plate_high=-deep,
+        plate_high=-deep - gasket,
         plate_low=low,
         under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
         bolt_circle_radius=bolts,
@@ -161,6 +159,7 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
         port_axis=low + _port_height(scene, port) if side else None,
         flange_draft=deep * math.tan(draft),
         ring=inside,
+        gasket=gasket,
     )
 
 
@@ -178,7 +177,7 @@ def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         least = scene.connector_printer.smallest.wall("rigid").recommended
-        hole = 0.5 * (seat.clearance_diameter + scene.hole_undersize) + least
+        hole = 0.5 * (max(seat.clearance_diameter, seat.core_diameter) + scene.hole_undersize) + least
         cone = groove - scene.fit_clearance - CLAMPED_SHARE * flange + seat.ring_thickness
         head = 0.5 * seat.head_diameter
         return groove + 2 * max(seat.ring_wall_mm, head + HEAD_GAP, hole, cone + head - groove)
@@ -192,7 +191,7 @@ def _bolt_circle(scene: ResolvedDesign, ring: float) -> float:
         return 0.5 * mount.pitch_diameter
     if not isinstance(mount, BoltCircle):
         return 0.0
-    if mount.family == "through":
+    if mount.family != "blind":
         return 0.5 * math.ceil(2 * (ring + mount.head_diameter / 2 + HEAD_GAP))
     return 0.5 * math.floor(2 * (ring - 1.5 * mount.hole_diameter))
 
@@ -203,11 +202,9 @@ def _plate_radius(scene: ResolvedDesign, ring: float, bolts: float) -> float:
         return max(ring, 0.5 * mount.plate_diameter)
     if isinstance(mount, Sleeve):
         return max(ring, finger_radius(scene) + mount.sleeve_wall)
-    if isinstance(mount, BoltCircle) and mount.family == "through":
-        hole = (
-            0.5 * (mount.hole_diameter + scene.hole_undersize)
-            + scene.connector_printer.smallest.wall("rigid").recommended
-        )
+    if isinstance(mount, BoltCircle) and mount.family != "blind":
+        least = scene.connector_printer.smallest.wall("rigid").recommended
+        hole = 0.5 * (mount.hole_diameter + scene.hole_undersize) + least
         return bolts + max(mount.head_diameter / 2 + HEAD_GAP, hole)
     return ring
 
@@ -222,7 +219,7 @@ def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
     """Thickness of the plate: at least the mount's; thicker for blind holes from both sides, a plug's shoulder or a
     port in the side."""
     seat, mount = scene.seat, scene.mount
-    depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
+    depth = (mount.hole_depth or 0.0) if isinstance(mount, BoltCircle) and mount.family == "blind" else 0.0
     needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall("rigid").recommended
     if isinstance(seat, ClampedFlange):
         needs.append(seat.core_depth + depth + floor)

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from pneutouch.shape.meridian import Arc, Line, Point
-from pneutouch.spec.part import Barb, Luer, Port, PushIn, Thread, Tube
+from pneutouch.spec.part import Barb, Luer, ORingStub, Port, PushIn, Thread, Tube
 
 if TYPE_CHECKING:
     from pneutouch.body import Prism
@@ -149,10 +149,37 @@ def _push_in(port: PushIn, tube: Tube, undersize: float) -> PortShape:
     return PortShape(outside, _to_plate(hollow), length, port.depth, passage)
 
 
+def _o_ring(port: ORingStub, tube: Tube, undersize: float) -> PortShape:
+    stub, floor, passage, length = (
+        0.5 * port.stub_diameter,
+        0.5 * port.groove_diameter,
+        0.5 * port.passage_diameter,
+        port.stub_length,
+    )
+    front = length - port.tip_length
+    back, slope = front - port.groove_width, 0.5 * port.tip_length
+    outside = (
+        ((stub - slope, length), "port mouth"),
+        ((stub, length - slope), "tip"),
+        ((stub, front), "stub"),
+        ((floor, front), "groove"),
+        ((floor, back), "groove"),
+        ((stub, back), "groove"),
+        ((stub, 0.0), "stub"),
+    )
+    return PortShape(outside, ((passage, length), (passage, 0.0)), length)
+
+
 def _to_plate(hollow: list[Point]) -> tuple[Point, ...]:
     """Hollow with its passage extended to the plate's face if it ends above the face."""
     radius, height = hollow[-1]
     return (*hollow, (radius, 0.0)) if height > 0 else tuple(hollow)
 
 
-_FAMILIES: dict[str, Callable[..., PortShape]] = {"barb": _barb, "thread": _thread, "luer": _luer, "push-in": _push_in}
+_FAMILIES: dict[str, Callable[..., PortShape]] = {
+    "barb": _barb,
+    "thread": _thread,
+    "luer": _luer,
+    "push-in": _push_in,
+    "o-ring": _o_ring,
+}

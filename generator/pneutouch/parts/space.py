@@ -13,7 +13,7 @@ Lengths = dict[str, tuple[float, float]]
 
 def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
-    lengths = _least(scene, layout)
+    lengths = least_radii(scene, layout)
     for what, (has, least) in lengths.items():
         if has < least:
             # Every one of these lengths grows by as much as the dome's radius, a circle of holes in steps of 0.5 mm.
@@ -27,7 +27,7 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
 
         check_ring(scene, layout.ring)
     mount = scene.design.connector.mount
-    for what, (has, most) in _most(scene, layout).items():
+    for what, (has, most) in greatest_radii(scene, layout).items():
         if has > most:
             problem = (
                 f"too large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space "
@@ -36,25 +36,13 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
             raise _no_space(scene, problem, "take a smaller dome, another seat or mount")
 
 
-def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
-    """Least relative margin of the radii that `check_space` compares; negative if it refuses the layout."""
-    small = [has / least - 1.0 for has, least in _least(scene, layout).values() if least > 0]
-    large = [most / has - 1.0 for has, most in _most(scene, layout).values()]
-    web: list[float] = []
-    if layout.ring is not None:
-        from pneutouch.parts.cast_ring import least_bridge
-
-        web = [width / least_bridge(scene) - 1.0 for width in (layout.ring.bridge, layout.ring.rim)]
-    return min([*small, *large, *web], default=math.inf)
-
-
 def _no_space(scene: ResolvedDesign, problem: str, remedy: str) -> InputError:
     radius = scene.design.membrane.inner_radius_mm
     value = int(radius) if radius.is_integer() else radius
     return InputError(problem, file=scene.where, key="membrane.inner_radius_mm", value=value, remedy=remedy)
 
 
-def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
+def least_radii(scene: ResolvedDesign, layout: Layout) -> Lengths:
     """Radii with a lower limit, and that limit."""
     seat, mount, port, needs = scene.seat, scene.mount, layout.port, {}
     wall = scene.connector_printer.smallest.wall("rigid").recommended
@@ -75,7 +63,7 @@ def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
     return needs
 
 
-def _most(scene: ResolvedDesign, layout: Layout) -> Lengths:
+def greatest_radii(scene: ResolvedDesign, layout: Layout) -> Lengths:
     """Radii with an upper limit, and that limit."""
     seat, mount = scene.seat, scene.mount
     if isinstance(mount, RobotFlange):

@@ -33,6 +33,8 @@ RULES: dict[str, Rule] = {
     "bubbles": mould.check_bubbles,
     "inhibition": mould.check_inhibition,
     "glue": working.check_glue,
+    "inserts": working.check_inserts,
+    "gland": working.check_gland,
     "driving": working.check_driving,
     "mixing curve": resins.check_mixing_curve,
     "freedom": working.check_freedom,

@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, grouped
 from pneutouch.body import Body
 from pneutouch.body.solid import mesh_of
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.prediction import CurveOutcome
 from pneutouch.mechanics.rating import Rating
@@ -46,7 +47,7 @@ class SensorContext:
     ``membrane`` is the name of the item that is the sensor's wall; ``calibrated``: True if the sensor exists already.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: surfaces that a cast membrane
     cures against. ``glued``: glue of membrane and connector, None if none is named or chosen. ``curves``: the sensor by
-    every mixing curve of its mix.
+    every mixing curve of its mix. ``scene``: its parts, for the rules on what is bought for it.
     """
 
     prediction: SensorPrediction
@@ -58,6 +59,7 @@ class SensorContext:
     wetted: tuple[WettedSurface, ...] = ()
     glued: GluedSeat | None = None
     curves: tuple[CurveOutcome, ...] = ()
+    scene: ResolvedDesign | None = None
 
 
 NARROW = 3.0

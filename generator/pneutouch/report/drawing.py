@@ -9,6 +9,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
+from pneutouch.parts.connector import travel
 from pneutouch.parts.layout import finger_radius
 from pneutouch.report.section import (
     CENTRE,
@@ -62,7 +63,8 @@ class _Section:
         layout, mount = assembly.layout, assembly.scene.mount
         self.ax, self.assembly, self.layout = ax, assembly, layout
         sleeve = mount.sleeve_length if isinstance(mount, Sleeve) else 0.0
-        self.bottom = min(layout.lowest, layout.plate_low - sleeve)
+        behind = layout.port.length if layout.port_axis is None else 0.0
+        self.bottom = min(layout.under - behind, layout.plate_low - sleeve)
         self.side = layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0)
         self.unit = max(layout.plate_radius / 22, (layout.shape.outer_height - self.bottom) / 26)
         self.left, self.right = -layout.plate_radius - 4 * self.unit, self.side + 4 * self.unit
@@ -102,7 +104,7 @@ class _Section:
             below = layout.plate_low - self.bottom
             vertical(ax, right, self.bottom, layout.plate_low, 0.2 * plate, f"{below:.2f} {self.rigid}")
         flange = layout.flange_thickness
-        vertical(ax, self.left, layout.plate_high, 0, -layout.flange_radius, f"{flange:.2f} {self.soft}")
+        vertical(ax, self.left, -flange, 0, -layout.flange_radius, f"{flange:.2f} {self.soft}")
         outside = self.left - 14 * self.unit
         whole = top - self.bottom
         vertical(ax, outside, self.bottom, top, self.left, f"({whole:.2f})")
@@ -137,7 +139,8 @@ class _Section:
         layout, unit, seat, mount = self.layout, self.unit, self.assembly.scene.seat, self.assembly.scene.mount
         at = (-6.5 * unit, self.bottom - 1.0 * unit)
         if isinstance(seat, ClampedFlange):
-            text = f"ring, {seat.screw_count} × {seat.screw}\ncloses {seat.squeeze * layout.flange_thickness:.2f}"
+            text = f"ring, {seat.screw_count} × {seat.screw}\ncloses {travel(seat, layout):.2f}"
+            text += f"\ngasket {layout.gasket:g}" if layout.gasket else ""
             spot = (-layout.ring_radius + unit, 0.9 * seat.ring_thickness)
             leader(self.ax, spot, (self.left - 0.5 * unit, 6.5 * unit), text, "right")
         if layout.ring is not None:

@@ -7,7 +7,8 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import Assembly
-from pneutouch.parts.glue import GLUES, glue_of
+from pneutouch.parts.connector import gasket_radii
+from pneutouch.parts.glue import GLUES, glue_of, glue_volume
 from pneutouch.parts.mould.assembly import SiliconeBatch
 from pneutouch.report.mould import mould_rows
 from pneutouch.report.pages import filled
@@ -37,6 +38,7 @@ def making(
     known = {"scene": scene, "stands": stands, "pour": pour, "glue": glue_of(scene), "glues": GLUES}
     figures = None if state is None else state.figures
     fall = figures and (LEAK * figures.sensitivity * figures.force_high, LEAK * figures.force_high)
+    known["gasket"] = gasket_radii(assembly.layout)
     text = filled("making.j2", **known, fill_kPa=min(stated_kPa or 1.0, rated_kPa), fall=fall)
     return [line for line in text.splitlines() if line]
 
@@ -79,7 +81,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
     """Markdown for the operator, who loads ``job_files`` and chooses resins at the machine; ``left_out``: reason by
     file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
-    glue_mL = assembly.glue_volume / ML
+    glue_mL = glue_volume(scene, assembly.layout) / ML
     mixed = f"-{assembly.job('membrane').replace(' ', '-')}."
     masses = {item.name: item.mass_g for job in sheet.estimates for item in job.items}
     return filled(
@@ -93,7 +95,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         ],
         job_files=[f"`{file}`" for file in job_files if not (scene.membrane_material.is_uncoded and mixed in file)],
         left_out=left_out,
-        deviation=max(assembly.deviation(body) for body in assembly.bodies),
+        deviation=max(assembly.solid(body.name).deviation(body) for body in assembly.bodies),
         calibration=scene.calibration,
         parts=[] if mould is None else [(body, mould.counts[body.name], masses[body.name]) for body in mould.printed],
         facts=[] if mould is None else mould_rows(mould),

@@ -17,11 +17,12 @@ from pneutouch.body.section import section_outline
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
+from pneutouch.parts.connector import gasket_radii
 from pneutouch.parts.layout import finger_radius
 from pneutouch.report.pictures import grade_colours
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, svg
 from pneutouch.shape.dome import DomeShape
-from pneutouch.spec.part import Barb, BoltCircle, ClampedFlange, Luer, OnePiece, RobotFlange, Sleeve, Thread
+from pneutouch.spec.part import Barb, BoltCircle, ClampedFlange, Luer, OnePiece, ORingStub, RobotFlange, Sleeve, Thread
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,7 +118,11 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
     the colours of its grade in place of the hatch."""
     from matplotlib.patches import PathPatch
 
-    grading = assembly.scene.membrane_material.along
+    grading, layout = assembly.scene.membrane_material.along, assembly.layout
+    if layout.gasket:
+        low, high, sides = layout.plate_high, -layout.flange_thickness, np.array(gasket_radii(layout))
+        corners = [side * sides for side in (-1.0, 1.0)]
+        draw_loops(ax, [np.array([(a, low), (b, low), (b, high), (a, high)]) for a, b in corners], "gasket")
     for solid in assembly.solids:
         loops = section_outline(solid, _TOLERANCE)
         if not loops:
@@ -210,6 +215,9 @@ def port_note(scene: ResolvedDesign) -> str:
         return f"{port.thread}\ncore Ø{port.core_diameter + wider:.4g}\n{port.depth:g} deep"
     if isinstance(port, Luer):
         return f"Luer lock\nØ{port.opening_diameter + wider:.4g}, {port.taper:.0%}"
+    if isinstance(port, ORingStub):
+        groove = f"groove Ø{port.groove_diameter:g}\n{port.groove_width:g} wide"
+        return f"O-ring {port.ring_diameter:g} × {port.section:g}\n{groove}"
     return f"Ø{scene.tube.outer_diameter + wider:.4g}\n{port.depth:g} deep"
 
 
@@ -253,7 +261,7 @@ def _box(ax: Axes, across: tuple[float, float], heights: tuple[float, float], lo
     ax.fill(x, z, facecolor=look, edgecolor=INK, lw=0.7)
 
 
-def _points(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+def _way(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
     ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": INK, "lw": 1.1, "shrinkA": 0, "shrinkB": 0})
 
 
@@ -262,7 +270,7 @@ def _screw(ax: Axes, x: float, tip: float, length: float, head: float, wide: flo
     turn = np.sign(length)
     _box(ax, (x - 0.5 * wide, x + 0.5 * wide), (tip, tip + length), "0.85")
     _box(ax, (x - 0.5 * head, x + 0.5 * head), (tip + length, tip + length + 0.6 * wide * turn), "0.85")
-    _points(ax, (x, tip - 0.15 * length), (x, tip - 0.7 * length))
+    _way(ax, (x, tip - 0.15 * length), (x, tip - 0.7 * length))
 
 
 def _gap(assembly: Assembly) -> float:
@@ -273,12 +281,12 @@ def _joining(ax: Axes, assembly: Assembly) -> None:
     layout, seat, gap = assembly.layout, assembly.scene.seat, _gap(assembly)
     if isinstance(seat, OnePiece):
         _sensor(ax, assembly, {"plug": -gap})
-        _points(ax, (0.0, layout.under - 0.7 * gap), (0.0, layout.under - 0.1 * gap))
+        _way(ax, (0.0, layout.under - 0.7 * gap), (0.0, layout.under - 0.1 * gap))
         return
     over = {"membrane": gap, "ring": 2.0 * gap if isinstance(seat, ClampedFlange) else gap}
     _sensor(ax, assembly, over)
     for x in (-layout.flange_radius, layout.flange_radius):
-        _points(ax, (x, gap - layout.flange_thickness), (x, 0.1 * gap))
+        _way(ax, (x, gap - layout.flange_thickness), (x, 0.1 * gap))
     if isinstance(seat, ClampedFlange):
         for x in (-layout.screw_circle, layout.screw_circle):
             _screw(ax, x, 3.0 * gap + seat.ring_thickness, 0.6 * gap, seat.head_diameter, seat.clearance_diameter)
@@ -309,10 +317,10 @@ def _port(ax: Axes, assembly: Assembly) -> None:
     x, z = _tube(ax, assembly, gap)
     if layout.port_axis is None:
         aside = layout.port.reach + 0.12 * layout.plate_radius
-        _points(ax, (aside, z), (aside, layout.lowest - 0.2 * gap))
+        _way(ax, (aside, z), (aside, layout.lowest - 0.2 * gap))
     else:
         below = layout.port_axis - layout.port.reach - 0.12 * layout.plate_radius
-        _points(ax, (x, below), (layout.plate_radius + layout.port.length + 0.2 * gap, below))
+        _way(ax, (x, below), (layout.plate_radius + layout.port.length + 0.2 * gap, below))
 
 
 def _mount(ax: Axes, assembly: Assembly) -> None:
@@ -322,7 +330,7 @@ def _mount(ax: Axes, assembly: Assembly) -> None:
         finger, end = finger_radius(assembly.scene), layout.plate_low - mount.sleeve_length
         outline = [-finger, -finger, finger, finger], [end - gap, end - 0.1, end - 0.1, end - gap]
         ax.plot(*outline, color=INK, lw=THIN, ls=NEIGHBOUR)
-        _points(ax, (0.0, end - 0.8 * gap), (0.0, end - 0.2 * gap))
+        _way(ax, (0.0, end - 0.8 * gap), (0.0, end - 0.2 * gap))
         return
     face, wide = layout.under, 1.15 * layout.plate_radius
     hole = layout.port.reach + 0.5

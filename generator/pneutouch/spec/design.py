@@ -276,6 +276,7 @@ class Accepted(Table):
     bubbles: Reason = _reason("bubbles")
     inhibition: Reason = _reason("inhibition")
     glue: Reason = _reason("glue")
+    gland: Reason = _reason("gland")
     freedom: Reason = _reason("freedom")
     mixing_curve: Reason = _reason("mixing curve")
     mould_fit: Reason = _reason("mould fit")

@@ -4,18 +4,26 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pneutouch.spec.fields import Table, number
+from pneutouch.spec.fields import SparseTable, Table, number
 
 Length = Annotated[float, Field(gt=0, json_schema_extra={"unit": "mm"})]
 Source = Annotated[str, Field(min_length=8)]
 
 
-class Part(Table):
+class Part(SparseTable):
     """Fields that every part has."""
 
     title: str = Field(description="Name of the part.")
     code: str = Field(description="Short form for part numbers.")
     source: Source = Field(description="Table, page or address; how far it was verified.")
+
+
+class Insert(Table):
+    """A threaded insert of brass that is melted into the hole of a thermoplastic body; its hole is the part's."""
+
+    title: str = Field(description="Name in a list to buy.")
+    wall: Length = Field(description="Least plastic around its hole.")
+    iron: str = Field(description="Temperature of the soldering iron that sets it, with its source.")
 
 
 class Tube(Part):
@@ -83,7 +91,26 @@ class PushIn(Part):
     boss_length: Length = Field(description="Length of the boss beyond the body.")
 
 
-Port = Barb | Thread | Luer | PushIn
+class ORingStub(Part):
+    """A stub with an O-ring in a groove around it, which goes into a bore and seals against its wall."""
+
+    family: Literal["o-ring"] = Field(description="A stub with an O-ring, for a bore.")
+    tubes: list[str] = Field(min_length=1, description="Tubes behind the bore; the first is the usual one.")
+    ring: str = Field(description="O-ring, such as ISO 3601-1, size code 010.")
+    ring_diameter: Length = Field(description="O-ring, inside.")
+    section: Length = Field(description="O-ring, thickness.")
+    section_tolerance: Length = Field(description="Deviation of the O-ring's thickness to either side.")
+    bore: Length = Field(description="Bore that the stub goes into.")
+    bore_tolerance: Length = Field(description="By how much that bore may be wider.")
+    groove_diameter: Length = Field(description="Floor of the groove.")
+    groove_width: Length = Field(description="Width of the groove.")
+    stub_diameter: Length = Field(description="Stub beside the groove.")
+    tip_length: Length = Field(description="Length of the stub in front of the groove.")
+    stub_length: Length = Field(description="Length of the stub.")
+    passage_diameter: Length = Field(description="Bore through the stub.")
+
+
+Port = Barb | Thread | Luer | PushIn | ORingStub
 
 
 class Seat(Part):
@@ -104,6 +131,7 @@ class GluedFlange(Seat):
 class ClampedFlange(Seat):
     """A flange pressed down by a ring with screws, no glue."""
 
+    left_out = ("insert", "gasket", "gasket_thickness", "gasket_squeeze")
     family: Literal["clamped-flange"] = Field(description="A flange pressed down by a ring.")
     screw: str = Field(description="Screw of the ring, such as M2.")
     screw_count: int = Field(ge=3, le=16, description="Number of screws.")
@@ -113,6 +141,10 @@ class ClampedFlange(Seat):
     head_diameter: Length = Field(description="Heads of the screws.")
     ring_thickness: Length = Field(description="Thickness of the ring.")
     squeeze: float = Field(gt=0, lt=0.5, description="Share of the flange's thickness that the ring takes up.")
+    insert: Insert | None = Field(default=None, description="Left out: the blind holes are tapped.")
+    gasket: str = Field(default="", description="Sheet of a gasket under the flange; left out: there is none.")
+    gasket_thickness: float = Field(default=0.0, ge=0, description="Thickness of that sheet.")
+    gasket_squeeze: float = Field(default=0.0, ge=0, lt=0.5, description="Share of it that the screws take up.")
 
 
 class OnePiece(Seat):
@@ -151,16 +183,18 @@ class PlainPlate(Mount):
 
 
 class BoltCircle(Mount):
-    """Mounting holes on a circle: through holes outside the seat, or blind holes under it."""
+    """Mounting holes on a circle, under the seat or outside it."""
 
-    family: Literal["through", "blind"] = Field(
-        description="Holes on a circle: through holes outside the seat, or blind holes under it."
+    left_out = ("insert",)
+    family: Literal["through", "blind", "edge"] = Field(
+        description="Holes on a circle: through or blind (edge) outside the seat, or blind under it."
     )
     screw: str = Field(description="Screw, such as M3.")
     count: int = Field(ge=2, le=12, description="Number of holes.")
     hole_diameter: Length = Field(description="Diameter of the holes.")
     head_diameter: Length = Field(description="Heads of the screws.")
     hole_depth: Length | None = Field(default=None, description="Blind holes only.")
+    insert: Insert | None = Field(default=None, description="Left out: the blind holes are tapped.")
 
 
 class RobotFlange(Mount):

@@ -20,8 +20,6 @@ Process = Literal["polyjet", "filament", "resin", "casting"]
 CAST_STEP_MM = 0.02
 """Step of the mesh of a cast body, which copies its mould: no process sets one."""
 
-_INCH_UM = 25400.0
-
 
 def _no_machine(title: str, what: str) -> InputError:
     return InputError(f"{title}: has no {what}: a cast body is not printed", remedy="take the profile of a printer")
@@ -69,11 +67,6 @@ class Resolution(Table):
     x_um: float = Field(gt=0, description="Step along x.")
     y_um: float = Field(gt=0, description="Step along y.")
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
-
-    @property
-    def dpi(self) -> tuple[int, int]:
-        """Dots per inch along x and y, whole numbers: the stated steps are rounded."""
-        return round(_INCH_UM / self.x_um), round(_INCH_UM / self.y_um)
 
 
 class VoxelPrint(Table):

@@ -24,12 +24,15 @@ from pneutouch.output.files import input_hash as hash_of
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.packing import PackingArea, in_rows
 from pneutouch.parts.cast_ring import RING
+from pneutouch.parts.connector import gasket_radii
+from pneutouch.parts.glue import glue_volume
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.printability import refuse
 from pneutouch.printability.rulebook import MOULD_INFILL
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.mould import mould_section
+from pneutouch.report.pages import filled
 from pneutouch.report.pictures import picture, pressed_files, shown
 from pneutouch.report.print_sheet import print_sheet, steps
 from pneutouch.report.section import assembly_pictures
@@ -80,6 +83,9 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("STEP")
     exact, left_out = step_files(scene.name, assembly.solids, assembly.print_offset)
     files |= exact
+    if assembly.layout.gasket:
+        cut = filled("gasket.dxf.j2", radii=gasket_radii(assembly.layout))
+        files[f"{scene.name}-gasket.dxf"] = cut.encode()
     if assembly.mould is not None:
         made, absent = mould_files(assembly.mould)
         files, left_out = files | made, left_out | absent
@@ -101,7 +107,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
         mesh=_meshes(evaluation, bodies),
         findings=tuple(finding.stated for finding in evaluation.findings),
         estimates=evaluation.estimates,
-        glue_mL=assembly.glue_volume / ML,
+        glue_mL=glue_volume(scene, assembly.layout) / ML,
         left_out=left_out or None,
         mould=None if assembly.mould is None else mould_record(assembly.mould),
     )
@@ -166,7 +172,7 @@ def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyM
             volume_mm3=round(body.volume, 3),
             exact_volume_mm3=round(solid.volume, 3),
             tolerance_mm=evaluation.scene.mesh_tolerance,
-            measured_deviation_mm=round(assembly.deviation(original), 6),
+            measured_deviation_mm=round(solid.deviation(original), 6),
         )
         for body, original, solid in zip(bodies, assembly.bodies, assembly.solids, strict=True)
     }

@@ -28,6 +28,9 @@ Progress = Callable[[int, int], None]
 SEED = 1
 
 
+_INCH_UM = 25400.0
+
+
 @dataclass(frozen=True)
 class VoxelPlan:
     """Plan of a stack before it is made: the job, its print mode, and the findings on it."""
@@ -64,7 +67,7 @@ def plan_voxels(
         bodies.append(VoxelBody(solid, mixed))
     grid = raster(
         [body.inside for body in bodies],
-        printer.pixel.dpi,
+        (round(_INCH_UM / printer.pixel.x_um), round(_INCH_UM / printer.pixel.y_um)),
         chosen.layer_um,
         upright=assembly.stands_up("membrane"),
         coarser=coarser,

@@ -18,6 +18,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.subject import subject_of, wetted
 from pneutouch.export.step import exact_solid
 from pneutouch.parts import Assembly, assemble
+from pneutouch.parts.connector import seat_area
 from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.pieces import silicone
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
@@ -75,7 +76,9 @@ def test_membrane_ring_and_connector_fill_one_another_exactly(assembly):
     for one, other in itertools.combinations(assembly.bodies, 2):
         assert overlap_volume(one, other) < 1e-9
     membrane, connector, body = assembly.bodies
-    assert shared_area(membrane, connector) == pytest.approx(assembly.seat_area, rel=1e-3)
+    assert shared_area(membrane, connector) == pytest.approx(
+        seat_area(assembly.scene.seat, assembly.solid("connector")), rel=1e-3
+    )
     foot = math.pi * (ring.collar_radius**2 - ring.flange_radius**2)
     assert shared_area(body, connector) == pytest.approx(foot, rel=1e-3)
     # What the silicone has less than its outline is the web without its holes; the ring has the collar in addition.

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.parts.connector import seat_area
 from pneutouch.parts.lettering.mark import read
 from pneutouch.workflows.tray.lay import fill, lay
 from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
@@ -68,7 +69,9 @@ def test_shared_faces_of_an_assembly_keep_their_triangles(seats):
 
     laid, _ = seats
     part = next(part for part in laid.parts if len(part.bodies) == 2)
-    assert shared_area(*part.bodies) == pytest.approx(part.value.assembly.seat_area, rel=1e-3)
+    assert shared_area(*part.bodies) == pytest.approx(
+        seat_area(part.value.assembly.scene.seat, part.value.assembly.solid("connector")), rel=1e-3
+    )
 
 
 def test_what_another_printer_prints_is_left_out_and_said(library, tmp_path):

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pictures.rules.case import LIBRARY, Case, Pair, assembled, evaluated, item_of, of_rule, of_sensor, window
+from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene
 from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.report.section import draw_section, leader, polar
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, plain_ticks
 from pneutouch.spec.grade import MixingCurve, MixingPoint
 from pneutouch.spec.material import Material
+from pneutouch.spec.read import parse_changes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -164,6 +168,45 @@ def _glued(label: str, text: str, seat: str) -> Case:
     return Case(label, of_sensor("glue", evaluation), draw)
 
 
+def inserts() -> Pair:
+    """Heat-set inserts in a connector of filament, and in one of a photopolymer."""
+    return _inserted("ABS", "abs-filament"), _inserted("VeroClear", "objet260-connex")
+
+
+def _inserted(material: str, profile: str) -> Case:
+    made = (f"connector.material={material}", f"print.connector_profile={profile}")
+    seat = ("connector.seat=clamped-flange-M2-insert", _REST)
+    evaluation = evaluated("paper-dome", *made, *seat, model="membrane")
+
+    def draw(ax: Axes) -> None:
+        draw_section(ax, evaluation.assembly)
+        layout, hole = evaluation.assembly.layout, evaluation.assembly.solid("connector").bores[-1]
+        spot = (layout.screw_circle, 0.5 * (hole.low + hole.high))
+        leader(ax, spot, (layout.plate_radius + 1.5, 6.0), f"insert\nin {material}", "left")
+        window(ax, 4, layout.plate_radius + 8, -12, 9)
+
+    return Case(f"inserts in {material}", of_sensor("inserts", evaluation), draw)
+
+
+def gland() -> Pair:
+    """An O-ring in its groove, and one in a groove that is too shallow."""
+    return _sealed(6.3), _sealed(6.8)
+
+
+def _sealed(floor: float) -> Case:
+    scene = load_scene("paper-dome", parse_changes(["connector.port=o-ring-9", _REST]), LIBRARY)
+    scene = replace(scene, port=scene.port.model_copy(update={"groove_diameter": floor}))
+    evaluation = evaluate_scene(scene, dict, PredictionOptions(model="membrane"))
+
+    def draw(ax: Axes) -> None:
+        draw_section(ax, evaluation.assembly)
+        low = evaluation.assembly.layout.under
+        leader(ax, (0.5 * floor, low - 4.4), (8.0, low - 5.0), f"groove Ø{floor:g}", "left")
+        window(ax, -12, 16, low - 10, low + 5)
+
+    return Case(f"groove Ø{floor:g}", of_sensor("gland", evaluation), draw)
+
+
 EXHIBITS = {
     "walls": walls,
     "layers": layers,
@@ -171,4 +214,6 @@ EXHIBITS = {
     "freedom": freedom,
     "mixing curve": mixing_curve,
     "glue": glue,
+    "inserts": inserts,
+    "gland": gland,
 }

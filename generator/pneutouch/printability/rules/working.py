@@ -9,9 +9,10 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.events import NO_LINE
 from pneutouch.mechanics.rating import BUCKLING
-from pneutouch.parts.glue import GLUES, glues_for
+from pneutouch.parts.glue import GLUES, glues_for, surface_of
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding
+from pneutouch.spec.part import ORingStub
 from pneutouch.units import KPA, UM
 from pneutouch.wording import data_of, tenths_below
 
@@ -218,6 +219,79 @@ def check_glue(view: PrintView) -> list[Finding]:
         return [Finding("glue", "error", context.membrane, text, fix, glue.source, None, None)]
     text = f"{glue.title} on {pair} carries small loads: the flange may peel off under pressure"
     return [Finding("glue", "warning", context.membrane, text, fix, glue.source, None, None)]
+
+
+def check_inserts(view: PrintView) -> list[Finding]:
+    """Findings on heat-set inserts of seat and mount in a connector that does not melt."""
+    context = view.sensor
+    if context is None or context.scene is None or context.calibrated:
+        return []
+    scene = context.scene
+    if surface_of(scene.connector_printer) == "thermoplastic":
+        return []
+    text = f"{scene.connector_material.title} does not melt: a heat-set insert finds no hold in it"
+    found = []
+    for key, name in (("seat", scene.design.connector.seat), ("mount", scene.design.connector.mount)):
+        if getattr(getattr(scene, key), "insert", None) is not None:
+            fix = (
+                f"take a connector.{key} with tapped holes (inserts can be glued into them), or a connector of filament"
+            )
+            found.append(
+                Finding("inserts", "error", "connector", f"{name}: {text}", fix, _SOURCES["inserts"], None, None)
+            )
+    return found
+
+
+_SQUEEZE, _FILL, _STRETCH = (0.15, 0.30), 0.85, 0.05
+"""Least and greatest squeeze of a static O-ring, greatest share of its groove that it fills, and greatest stretch."""
+
+
+class Gland(NamedTuple):
+    """Numbers of an O-ring in its groove: squeeze as drawn, and least and greatest by the tolerances; fill; stretch."""
+
+    squeeze: float
+    least: float
+    most: float
+    fill: float
+    stretch: float
+
+
+def gland(port: ORingStub, accuracy: float) -> Gland:
+    """The gland of a stub whose printer makes a length within ``accuracy`` mm.
+
+    A stretched ring is thinner by half the stretch. Tolerances of groove, bore and ring add up as independent ones.
+    """
+    nominal = np.array([port.groove_diameter, port.bore, port.section])
+    off = np.diag([accuracy, port.bore_tolerance, port.section_tolerance])
+    groove, bore, ring = np.vstack([nominal, nominal + off]).T
+    stretch, depth = groove / port.ring_diameter - 1.0, 0.5 * (bore - groove)
+    section = ring * (1.0 - 0.5 * stretch)
+    squeeze = 1.0 - depth / section
+    spread, exact = float(np.linalg.norm(squeeze[1:] - squeeze[0])), float(squeeze[0])
+    fill = float(0.25 * math.pi * section[0] ** 2 / (depth[0] * port.groove_width))
+    return Gland(exact, exact - spread, exact + spread, fill, float(stretch[0]))
+
+
+def check_gland(view: PrintView) -> list[Finding]:
+    """Findings on an O-ring whose squeeze, with the tolerances of print and ring, fill or stretch is out of bounds."""
+    context = view.sensor
+    if context is None or context.scene is None or context.calibrated or not isinstance(context.scene.port, ORingStub):
+        return []
+    made = gland(context.scene.port, context.scene.connector_printer.accuracy_mm.nominal)
+    low, high = _SQUEEZE
+    spread = f"squeezed by {made.squeeze:.0%}, {made.least:.0%} to {made.most:.0%} by the tolerances of print and ring"
+    checks = (
+        (made.least < low, spread, Excess(100 * made.least, 100 * low, "%")),
+        (made.most > high, spread, Excess(100 * made.most, 100 * high, "%")),
+        (made.fill > _FILL, f"fills {made.fill:.0%} of its groove", Excess(100 * made.fill, 100 * _FILL, "%")),
+        (not 0.0 <= made.stretch <= _STRETCH, f"stretched by {made.stretch:.1%}", Excess(100 * made.stretch, 5.0, "%")),
+    )
+    fix = "turn the groove to size after printing, or take another connector.port or print.connector_profile"
+    return [
+        Finding("gland", "warning", "connector", f"the O-ring is {text}", fix, _SOURCES["gland"], None, by)
+        for wrong, text, by in checks
+        if wrong
+    ]
 
 
 _TOUCH = 0.05

@@ -5,6 +5,7 @@ Connector: the space for its parts around a dome, the diameter of the whole sens
 Also the design file that a candidate becomes, and what ``check`` says of it.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -35,9 +36,10 @@ from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
-from pneutouch.parts.layout import lay_out_dome
+from pneutouch.parts.cast_ring import least_bridge
+from pneutouch.parts.layout import Layout, lay_out_dome
 from pneutouch.parts.port import port_shape
-from pneutouch.parts.space import space_margin
+from pneutouch.parts.space import greatest_radii, least_radii
 from pneutouch.printability import check
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem
 from pneutouch.selection.candidates import CandidatePool
@@ -69,6 +71,16 @@ def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFi
         return ConnectorFit(np.array(margins), np.array([2.0 * layout.plate_radius for layout in layouts]))
 
     return fit
+
+
+def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
+    """Least relative margin of the radii that `check_space` compares; negative if it refuses the layout."""
+    small = [has / least - 1.0 for has, least in least_radii(scene, layout).values() if least > 0]
+    large = [most / has - 1.0 for has, most in greatest_radii(scene, layout).values()]
+    web: list[float] = []
+    if layout.ring is not None:
+        web = [width / least_bridge(scene) - 1.0 for width in (layout.ring.bridge, layout.ring.rim)]
+    return min([*small, *large, *web], default=math.inf)
 
 
 def base_sensor(scene: ResolvedDesign) -> Sensor:
