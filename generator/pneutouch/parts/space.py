@@ -15,7 +15,7 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
     lengths = least_radii(scene, layout)
     for what, (has, least) in lengths.items():
-        if has < least:
+        if has < least - 1e-9:  # rounding
             # Every one of these lengths grows by as much as the dome's radius, a circle of holes in steps of 0.5 mm.
             enough = scene.design.membrane.inner_radius_mm + max(b - a for a, b in lengths.values())
             enough += 0.5 if isinstance(scene.mount, BoltCircle) else 0.0
