@@ -84,7 +84,7 @@ def test_dead_volume_counts_connector_and_tube_and_the_tube_named(library):
     assert made.dead_volume == pytest.approx(made.internal_volume + made.tube_volume)
 
 
-@pytest.mark.parametrize("port", ["luer-female", "thread-M5", "barb-6x4"])
+@pytest.mark.parametrize("port", ["luer-female", "thread-M5", "barb-6x4", "o-ring-9"])
 @pytest.mark.parametrize(
     ("seat", "mount"),
     [
@@ -92,6 +92,8 @@ def test_dead_volume_counts_connector_and_tube_and_the_tube_named(library):
         ("clamped-flange-M2", "finger-16"),
         ("glued-flange", "robot-50-4-M6"),
         ("cast-ring", "plain"),
+        ("clamped-flange-M2-gasket", "rear-4xM3-insert"),
+        ("clamped-flange-M2-insert", "finger-16"),
     ],
 )
 def test_exact_volumes_are_those_of_the_cad_kernel(port, seat, mount):
