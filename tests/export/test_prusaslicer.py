@@ -26,6 +26,11 @@ CASES = {
     "clamped barb": {"connector.port": "barb-4x2.5", "connector.seat": "clamped-flange-M2"},
     "Luer on a finger": {"connector.port": "luer-female", "connector.mount": "finger-16"},
     "robot flange": {"connector.port": "thread-M5", "connector.mount": "robot-50-4-M6"},
+    "inserts and O-ring": {
+        "connector.port": "o-ring-9",
+        "connector.seat": "clamped-flange-M2-insert",
+        "connector.mount": "rear-4xM3-insert",
+    },
     "NinjaFlex": {**TPU, "membrane.material": "NinjaFlex", "connector.port": "push-in-4"},
     "Filaflex, dome down": {**TPU, "membrane.material": "FilaFlex60A", "print.orientation": "dome-down"},
     "Cheetah, large": {**TPU, "membrane.material": "Cheetah", "membrane.inner_radius_mm": 14.0},
