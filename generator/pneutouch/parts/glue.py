@@ -1,4 +1,4 @@
-"""Glues by the pair of surfaces that they join; only silicone's own glue bonds to silicone."""
+"""Glues by the pair of surfaces that they join, and the gaps they fill; only silicone's own glue bonds to silicone."""
 
 from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple

@@ -279,16 +279,22 @@ def check_gland(view: PrintView) -> list[Finding]:
         return []
     made = gland(context.scene.port, context.scene.connector_printer.accuracy_mm.nominal)
     low, high = _SQUEEZE
-    spread = f"squeezed by {made.squeeze:.0%}, {made.least:.0%} to {made.most:.0%} by the tolerances of print and ring"
+    spread = (
+        f"is squeezed by {made.squeeze:.0%}, {made.least:.0%} to {made.most:.0%} by the tolerances of print and ring"
+    )
     checks = (
         (made.least < low, spread, Excess(100 * made.least, 100 * low, "%")),
         (made.most > high, spread, Excess(100 * made.most, 100 * high, "%")),
         (made.fill > _FILL, f"fills {made.fill:.0%} of its groove", Excess(100 * made.fill, 100 * _FILL, "%")),
-        (not 0.0 <= made.stretch <= _STRETCH, f"stretched by {made.stretch:.1%}", Excess(100 * made.stretch, 5.0, "%")),
+        (
+            not 0.0 <= made.stretch <= _STRETCH,
+            f"is stretched by {made.stretch:.1%}",
+            Excess(100 * made.stretch, 5.0, "%"),
+        ),
     )
     fix = "turn the groove to size after printing, or take another connector.port or print.connector_profile"
     return [
-        Finding("gland", "warning", "connector", f"the O-ring is {text}", fix, _SOURCES["gland"], None, by)
+        Finding("gland", "warning", "connector", f"the O-ring {text}", fix, _SOURCES["gland"], None, by)
         for wrong, text, by in checks
         if wrong
     ]
