@@ -188,6 +188,8 @@ PUT_TOGETHER = {
     "cast around a ring": ("cast-dome", {"seat": "cast-ring", "mount": "finger-16", "port": "thread-M5"}),
     "one piece": ("paper-dome", ONE_PIECE),
     "plain": ("paper-dome", {"mount": "plain"}),
+    "gasket": ("paper-dome", {"seat": "clamped-flange-M2-gasket", "port": "o-ring-9", "mount": "rear-4xM3-insert"}),
+    "inserts": ("cast-dome", {"seat": "clamped-flange-M2-insert", "port": "o-ring-9", "mount": "finger-16"}),
 }
 
 

@@ -18,7 +18,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.connector import gasket_radii
-from pneutouch.parts.layout import finger_radius
+from pneutouch.parts.layout import Layout, finger_radius
 from pneutouch.report.pictures import grade_colours
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, svg
 from pneutouch.shape.dome import DomeShape
@@ -119,10 +119,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
     from matplotlib.patches import PathPatch
 
     grading, layout = assembly.scene.membrane_material.along, assembly.layout
-    if layout.gasket:
-        low, high, sides = layout.plate_high, -layout.flange_thickness, np.array(gasket_radii(layout))
-        corners = [side * sides for side in (-1.0, 1.0)]
-        draw_loops(ax, [np.array([(a, low), (b, low), (b, high), (a, high)]) for a, b in corners], "gasket")
+    _gasket(ax, layout)
     for solid in assembly.solids:
         loops = section_outline(solid, _TOLERANCE)
         if not loops:
@@ -137,6 +134,14 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
         filled = assembly.layout.ring is not None and solid.role == RING
         for bore in solid.bores:
             _turned_in(ax, bore, both_sides=filled or assembly.layout.port_axis is None, filled=filled)
+
+
+def _gasket(ax: Axes, layout: Layout, lift: float = 0.0) -> None:
+    """Draw the gasket under the flange, if there is one, ``lift`` mm above its place."""
+    if layout.gasket:
+        low, high = layout.plate_high + lift, layout.plate_high + layout.gasket + lift
+        sides = [side * np.array(gasket_radii(layout)) for side in (-1.0, 1.0)]
+        draw_loops(ax, [np.array([(a, low), (b, low), (b, high), (a, high)]) for a, b in sides], "gasket")
 
 
 def draw_loops(ax: Axes, loops: Sequence[Array], role: str, hatches: Mapping[str, str] = _HATCHES) -> None:
@@ -248,7 +253,9 @@ def assembly_pictures(assembly: Assembly, steps: Sequence[str]) -> str:
 
 
 def _sensor(ax: Axes, assembly: Assembly, away: dict[str, float] | None = None) -> None:
-    """Draw the section with bodies away from their place by a height in mm, by role."""
+    """Draw the section with bodies away from their place by a height in mm, by role; a gasket where all are in it."""
+    if away is None:
+        _gasket(ax, assembly.layout)
     for solid in assembly.solids:
         shift = np.array([0.0, (away or {}).get(solid.role, 0.0)])
         loops = section_outline(solid, _TOLERANCE)
@@ -283,6 +290,7 @@ def _joining(ax: Axes, assembly: Assembly) -> None:
         _sensor(ax, assembly, {"plug": -gap})
         _way(ax, (0.0, layout.under - 0.7 * gap), (0.0, layout.under - 0.1 * gap))
         return
+    _gasket(ax, layout, 0.5 * gap)
     over = {"membrane": gap, "ring": 2.0 * gap if isinstance(seat, ClampedFlange) else gap}
     _sensor(ax, assembly, over)
     for x in (-layout.flange_radius, layout.flange_radius):
@@ -292,14 +300,18 @@ def _joining(ax: Axes, assembly: Assembly) -> None:
             _screw(ax, x, 3.0 * gap + seat.ring_thickness, 0.6 * gap, seat.head_diameter, seat.clearance_diameter)
 
 
-def _tube(ax: Axes, assembly: Assembly, away: float) -> tuple[float, float]:
-    """Draw the tube, away from its seat in the port by a distance; its far end, (x, z)."""
-    layout, port, tube = assembly.layout, assembly.layout.port, assembly.scene.tube
+def _tube(ax: Axes, assembly: Assembly, away: float) -> tuple[float, float, float]:
+    """Draw the tube, or the bore for a stub, away from its seat by a distance; x and z of its end, half its width."""
+    layout, port, part, tube = assembly.layout, assembly.layout.port, assembly.scene.port, assembly.scene.tube
+    around = isinstance(part, ORingStub)
+    inner, outer = (
+        (part.bore, part.bore + 6.0) if isinstance(part, ORingStub) else (tube.inner_diameter, tube.outer_diameter)
+    )
     length = 0.7 * _gap(assembly)
-    depth = port.length if isinstance(assembly.scene.port, Barb) else max(port.engaged, 1.0)
+    depth = port.length if around or isinstance(part, Barb) else max(port.engaged, 1.0)
     near = port.length - depth + away
     for side in (-1.0, 1.0):
-        wall = sorted((0.5 * side * tube.inner_diameter, 0.5 * side * tube.outer_diameter))
+        wall = sorted((0.5 * side * inner, 0.5 * side * outer))
         along = (near, near + depth + length)
         if layout.port_axis is None:
             _box(ax, (wall[0], wall[1]), (layout.under - along[1], layout.under - along[0]), "0.85")
@@ -307,19 +319,19 @@ def _tube(ax: Axes, assembly: Assembly, away: float) -> tuple[float, float]:
             low, high = (layout.port_axis + w for w in wall)
             _box(ax, (layout.plate_radius + along[0], layout.plate_radius + along[1]), (low, high), "0.85")
     if layout.port_axis is None:
-        return 0.0, layout.under - near - depth - length
-    return layout.plate_radius + near + depth + length, layout.port_axis
+        return 0.0, layout.under - near - depth - length, 0.5 * outer
+    return layout.plate_radius + near + depth + length, layout.port_axis, 0.5 * outer
 
 
 def _port(ax: Axes, assembly: Assembly) -> None:
     layout, gap = assembly.layout, _gap(assembly)
     _sensor(ax, assembly)
-    x, z = _tube(ax, assembly, gap)
+    x, z, half = _tube(ax, assembly, gap)
+    aside = max(layout.port.reach, half) + 0.12 * layout.plate_radius
     if layout.port_axis is None:
-        aside = layout.port.reach + 0.12 * layout.plate_radius
-        _way(ax, (aside, z), (aside, layout.lowest - 0.2 * gap))
+        _way(ax, (aside, z), (aside, layout.under - layout.port.length - 0.2 * gap))
     else:
-        below = layout.port_axis - layout.port.reach - 0.12 * layout.plate_radius
+        below = layout.port_axis - aside
         _way(ax, (x, below), (layout.plate_radius + layout.port.length + 0.2 * gap, below))
 
 
@@ -347,11 +359,12 @@ def _mount(ax: Axes, assembly: Assembly) -> None:
 
 def _leak_test(ax: Axes, assembly: Assembly) -> None:
     _sensor(ax, assembly)
-    x, z = _tube(ax, assembly, 0.0)
+    end, z, _ = _tube(ax, assembly, 0.0)
     pitch = 0.42 * assembly.layout.plate_radius
+    x = end if assembly.layout.port_axis is None else end + 0.6 * pitch
     places = {"gauge": (x + 1.4 * pitch, z - 0.4 * pitch), "valve": (x, z - pitch), "syringe": (x, z - 1.9 * pitch)}
     for text, (right, low) in places.items():
-        ax.plot([x, x, right], [z, low, low], color=INK, lw=THIN)
+        ax.plot([end, x, x, right], [z, z, low, low], color=INK, lw=THIN)
         box = {"boxstyle": "circle" if text == "gauge" else "round", "fc": "white", "ec": INK, "lw": 0.7, "pad": 0.25}
         ax.annotate(text, (right, low), ha="center", va="center", fontsize=5.5, color=INK, bbox=box)
 
