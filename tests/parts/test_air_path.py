@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.catalogue import load_scene
-from pneutouch.errors import PneutouchError
+from pneutouch.errors import InputError, PneutouchError
 from pneutouch.parts import assemble
 from pneutouch.parts.air_path import air_path
 
@@ -49,3 +49,24 @@ def test_a_barb_is_a_narrow_neck_between_channel_and_tube(library):
 def test_no_tube_is_no_piece(library):
     assembly = assemble(load_scene("paper-dome", {"pneumatics.tube_length_mm": 0.0}, library))
     assert "tube" not in [piece.name for piece in air_path(assembly.scene, assembly.layout)]
+
+
+def test_adaptors_behind_the_tube_are_pieces_and_gas_of_the_line(library):
+    plain, more = (
+        assemble(load_scene("fingertip-dome", changes, library))
+        for changes in ({}, {"pneumatics.adaptors_mm": [[12.0, 1.0], [5, 3]]})
+    )
+    pieces = air_path(more.scene, more.layout)
+    assert pieces[:-2] == air_path(plain.scene, plain.layout)
+    assert [(one.name, one.length, round(2.0 * one.radius, 9)) for one in pieces[-2:]] == [
+        ("adaptor", 12.0, 1.0),
+        ("adaptor", 5.0, 3.0),
+    ]
+    assert more.drawn_volume - plain.drawn_volume == pytest.approx(sum(one.volume for one in pieces[-2:]))
+
+
+@pytest.mark.parametrize("wrong", [[[1.0]], [[5.0, 0.01]], [[5.0, 2.0, 1.0]], [[-3.0, 1.0]], [[2.0, 1.0]] * 21])
+def test_an_adaptor_that_cannot_be_is_refused_by_its_key(wrong, library):
+    with pytest.raises(InputError) as error:
+        load_scene("fingertip-dome", {"pneumatics.adaptors_mm": wrong}, library)
+    assert error.value.key.startswith("pneumatics.adaptors_mm")

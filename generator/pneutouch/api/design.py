@@ -18,7 +18,7 @@ from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.catalogue.scene import check_kind, membrane_material_of
 from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
-from pneutouch.evaluation.result import by_mixing_curve
+from pneutouch.evaluation.subject import by_mixing_curve
 from pneutouch.mechanics.models.choice import model_options
 from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble

@@ -123,20 +123,6 @@ def predict(
         echo(prediction_text(prediction))
 
 
-@app.command("list")
-def list_(kind: Annotated[str | None, parameter("kind")] = None, json: JsonOption = False) -> None:
-    """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
-    from pneutouch.catalogue.listing import listing
-    from pneutouch.cli.prediction_text import listing_text
-
-    content = listing(kind)
-    print_answer(content, listing_text, json=json)
-    broken = [entry["file"] for entries in content.values() for entry in entries if "error" in entry]
-    if broken:
-        remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
-        raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
-
-
 def design_folder(out: Path | None) -> Path:
     """The folder given for a design file, else ``designs`` in the user's folder."""
     from pneutouch.catalogue import user_folder

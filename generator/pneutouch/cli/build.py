@@ -104,7 +104,7 @@ def check(
         with bar("checking the specimen"):
             findings = check_specimen(design, cli.changes(set_, calibration), deep=deep)
     else:
-        from pneutouch.evaluation.result import by_mixing_curve
+        from pneutouch.evaluation.subject import by_mixing_curve
 
         evaluation = _evaluated(design, cli.changes(set_, calibration))
         with bar("checking printability and limits"):
@@ -120,9 +120,7 @@ def check(
         listed = [f.stated for f in findings]
         cli.print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
     else:
-        from pneutouch.cli.prediction_text import finding_line
-
-        echo("\n".join(f"{finding_line(one)}  [{one.source}]" for one in findings) or "no findings")
+        echo("\n".join(f"{_line(one)}  [{one.source}]" for one in findings) or "no findings")
         if not broken:
             report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
     if broken:
@@ -188,11 +186,10 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
     """Report on stderr the findings, and the files that a build left out and why, such as STEP without CadQuery."""
     from json import loads
 
-    from pneutouch.cli.prediction_text import finding_line
     from pneutouch.output.files import MANIFEST
 
     for finding in findings:
-        notify(finding_line(finding))
+        notify(_line(finding))
 
     path = folder / MANIFEST
     manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
@@ -255,3 +252,8 @@ def _progress(steps: Sequence[str]) -> Iterator[Callable[[str], None]]:
     """A bar over named steps on a terminal; one line a step elsewhere."""
     with bar("") as report:
         yield lambda step: report(steps.index(step), len(steps), step)
+
+
+def _line(finding: Finding) -> str:
+    """A finding as a message: its severity, rule and body, the problem and the remedy."""
+    return f"{finding.severity}: {finding.rule}: {finding.body}: {finding.message}; {finding.fix}"

@@ -12,10 +12,9 @@ from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.wording import SIMULATED, counted, held_by, tenths_below, unknown_at
 
 if TYPE_CHECKING:
-    from pneutouch.printability import Finding
     from pneutouch.results.behaviour import CalibratedBy, ContactAnywhere, DynamicRecord, Dynamics, Viscous
     from pneutouch.results.prediction import LimitPointRecord, PredictionRecord, RatingRecord, StateRecord
-    from pneutouch.results.uncertainty import IntervalRecord
+    from pneutouch.results.uncertainty import FigureRecord, IntervalRecord
 
 
 def dynamics_lines(dynamics: Dynamics) -> list[str]:
@@ -122,7 +121,7 @@ def _state_table(states: Sequence[StateRecord]) -> str:
             f"{state.apex_height_inner_mm:.3f}",
             f"{state.apex_height_outer_mm:.3f}",
             _optional(state.sensitivity_kPa_per_N, ".3f"),
-            _known(state, SENSITIVITY_KEY, ".2f"),
+            _known(state, SENSITIVITY_KEY),
             *(_interval(_sampled(state)) for _ in sampled),
             _optional(state.r_squared, ".4f"),
             _optional(state.stiffness_at_1mm_N_per_mm, ".3f"),
@@ -133,12 +132,6 @@ def _state_table(states: Sequence[StateRecord]) -> str:
         ]
         rows.append(row)
     return table_text(head, rows)
-
-
-def _known(state: StateRecord, figure: str, form: str) -> str:
-    """Interval of a figure, k = 2; a dash if it is not known."""
-    known = None if state.uncertainty is None else state.uncertainty.known.get(figure)
-    return "-" if known is None else f"{known.low:{form}} to {known.high:{form}}"
 
 
 def _as_drawn(prediction: PredictionRecord) -> list[str]:
@@ -166,7 +159,7 @@ def _filled(states: Sequence[StateRecord]) -> list[str]:
                 _known(state, "driving_pressure_kPa", ".1f"),
                 f"{state.apex_height_outer_mm:.3f}",
                 held_by(held.stable_regulated, held.stable_sealed),
-                _known(state, SENSITIVITY_KEY, ".2f"),
+                _known(state, SENSITIVITY_KEY),
                 *_figures_cells(state),
             ]
         )
@@ -223,8 +216,12 @@ def _sampled(state: StateRecord) -> IntervalRecord | None:
     return None if samples is None else samples.figures.get(SENSITIVITY_KEY)
 
 
-def _interval(ends: IntervalRecord | None) -> str:
-    return "-" if ends is None else f"{ends.low:.2f} to {ends.high:.2f}"
+def _known(state: StateRecord, figure: str, form: str = ".2f") -> str:
+    return _interval(None if state.uncertainty is None else state.uncertainty.known.get(figure), form)
+
+
+def _interval(ends: IntervalRecord | FigureRecord | None, form: str = ".2f") -> str:
+    return "-" if ends is None else f"{ends.low:{form}} to {ends.high:{form}}"
 
 
 def _uncertainty(states: Sequence[StateRecord]) -> list[str]:
@@ -258,25 +255,6 @@ def _span(percents: list[float | None]) -> str:
         return "not known"
     ends = f"{min(known):.1f} %" if len(known) == 1 else f"{min(known):.1f} to {max(known):.1f} %"
     return ends if len(known) == len(percents) else f"{ends} (not known by every source)"
-
-
-def finding_line(finding: Finding) -> str:
-    """A finding as a message: its severity, rule and body, the problem and the remedy."""
-    return f"{finding.severity}: {finding.rule}: {finding.body}: {finding.message}; {finding.fix}"
-
-
-def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
-    """The lists by kind as text, each name with its title."""
-    blocks = []
-    for group, entries in content.items():
-        rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), _titled(entry)] for entry in entries]
-        blocks.append(f"{group}\n" + (table_text([], rows, indent="  ") or "  none"))
-    return "\n\n".join(blocks)
-
-
-def _titled(entry: dict[str, str]) -> str:
-    """The title of an entry, or the error in its file, on one line."""
-    return entry["title"] if "error" not in entry else f"cannot be read: {entry['error'].partition(chr(10))[0]}"
 
 
 def _optional(value: float | None, form: str) -> str:

@@ -1,4 +1,4 @@
-"""``pneutouch show``: what a 3MF or a voxel stack holds."""
+"""``pneutouch show``: what a 3MF or a voxel stack holds; and ``pneutouch list``: what the library holds."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,6 +9,7 @@ import typer
 from pneutouch.cli.app import JsonOption, app, print_answer, refuse_flags
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import filled_text, table_text
+from pneutouch.errors import InputError
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
 from pneutouch.spec.toml_text import flat
 
@@ -34,6 +35,19 @@ def show(
 
         refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
         print_answer(run(file), show_text, json=json)
+
+
+@app.command("list")
+def list_(kind: Annotated[str | None, parameter("kind")] = None, json: JsonOption = False) -> None:
+    """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
+    from pneutouch.catalogue.listing import listing
+
+    content = listing(kind)
+    print_answer(content, listing_text, json=json)
+    broken = [entry["file"] for entries in content.values() for entry in entries if "error" in entry]
+    if broken:
+        remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
+        raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
 
 
 NO_RECIPE = "no recipe: it cannot be built again"
@@ -134,3 +148,17 @@ def _table(title: str, content: Mapping[str, object]) -> str:
 def _flat(rows: list[list[str]]) -> list[list[str]]:
     """Cells on one line each."""
     return [[" ".join(cell.split()) for cell in row] for row in rows]
+
+
+def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
+    """The lists by kind as text, each name with its title."""
+    blocks = []
+    for group, entries in content.items():
+        rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), _titled(entry)] for entry in entries]
+        blocks.append(f"{group}\n" + (table_text([], rows, indent="  ") or "  none"))
+    return "\n\n".join(blocks)
+
+
+def _titled(entry: dict[str, str]) -> str:
+    """The title of an entry, or the error in its file, on one line."""
+    return entry["title"] if "error" not in entry else f"cannot be read: {entry['error'].partition(chr(10))[0]}"

@@ -1,13 +1,14 @@
 """Speed of a sensor's reading: its gas line as drawn, and the figures of every state."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
-from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
+from pneutouch.mechanics.line.dynamics import GasLine, LineElement, SensorDynamics
+from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume, Step
 from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures, with_end
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts import Assembly
@@ -108,11 +109,12 @@ def state_dynamics(
     """Linear dynamics of a state for small changes; ``compliance`` of the wall in mm3/MPa, ``series`` None: elastic."""
     pieces, end, _ = line_of(assembly, sensor)
     air = AirState(sensor.gas.ambient_pressure + state.driving_pressure)
-    elements: list[Duct | GasVolume] = [
-        GasVolume(piece.volume) if piece.name == GAP else Duct(piece.length, piece.radius) for piece in pieces
-    ]
+    elements: list[LineElement] = [GasVolume(piece.volume) for piece in pieces if piece.name == GAP]
+    ducts = [Duct(piece.length, piece.radius) for piece in pieces if piece.name != GAP]
+    for before, duct in pairwise([Duct(0.0, np.inf), *ducts]):
+        elements += [Step(before.radius, duct.radius), duct]
     if end:
-        elements.append(GasVolume(end))
+        elements += [*(Step(duct.radius, np.inf) for duct in ducts[-1:]), GasVolume(end)]
     # The inflated wall is taken as a cap of a sphere over the base plane.
     radius = assembly.layout.inner_radius
     surface = np.pi * (2.0 * radius**2 + state.apex_inner**2)

@@ -17,14 +17,12 @@ from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.mechanics.response import tangent_stiffness
 from pneutouch.results.behaviour import Aged, CalibratedBy
 from pneutouch.results.prediction import (
-    ByMixingCurve,
     Curve,
     EventRecord,
     HeldRecord,
     InflationRecord,
     LimitPointRecord,
     LimitsRecord,
-    MixState,
     OffAxisRecord,
     PredictionRecord,
     RatingFinding,
@@ -38,7 +36,7 @@ from pneutouch.wording import rounded
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.mechanics.harmonic.press import OffAxisCurve, ShearCurve
-    from pneutouch.mechanics.prediction import CurveOutcome, LimitPoint, Limits, SensorPrediction, SensorState
+    from pneutouch.mechanics.prediction import LimitPoint, Limits, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.results.behaviour import ContactAnywhere, GaugeFigures
 
@@ -86,12 +84,15 @@ def _anywhere(evaluation: Evaluation) -> ContactAnywhere:
 
 def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """`predicted` with relaxation and speed, and with gauge, mixing curves, calibration and ageing if there are any."""
+    if evaluation.curves:
+        # Few designs are of a mix.
+        from pneutouch.evaluation.subject import by_mixing_curve
     return replace(
         predicted(evaluation, samples),
         viscous=viscous(evaluation.viscous_runs),
         dynamics=dynamics(evaluation.bandwidth),
         gauge=None if evaluation.scene.gauge is None else _gauge(evaluation),
-        mixing_curves=by_mixing_curve(evaluation.curves),
+        mixing_curves=by_mixing_curve(evaluation.curves) if evaluation.curves else (),
         calibration=_calibrated_by(evaluation),
         aged=_aged(evaluation) if evaluation.options.aged else None,
     )
@@ -242,26 +243,6 @@ def rating_record(rating: Rating, driving_pressures: Sequence[float]) -> RatingR
         least_pressure_basis=rating.vacuum_basis or None,
     )
     return rounded(record, _DIGITS)
-
-
-def by_mixing_curve(outcomes: Sequence[CurveOutcome]) -> tuple[ByMixingCurve, ...]:
-    """The sensor by every mixing curve of its mix, the softest first."""
-    records = tuple(
-        ByMixingCurve(
-            curve=one.by_curve.curve,
-            place=one.by_curve.place,
-            shear_modulus_MPa=one.by_curve.shear_modulus_MPa.nominal,
-            beyond_last_point=one.by_curve.beyond,
-            rated_pressure_kPa=None if one.rated is None else one.rated / KPA,
-            states=tuple(
-                MixState(state.driving_pressure / KPA, found and found.sensitivity, found and found.force_range[1])
-                for state in one.states
-                for found in (state.figures,)
-            ),
-        )
-        for one in outcomes
-    )
-    return rounded(records, _DIGITS)
 
 
 def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:

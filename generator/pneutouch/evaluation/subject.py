@@ -3,7 +3,7 @@
 Findings of the print rules on a sensor and, where its membrane is cast, on its mould.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -29,10 +29,12 @@ from pneutouch.printability.rulebook import check_mould, mould_subject
 from pneutouch.printability.rules.feature_sizes import ALIKE, CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
+from pneutouch.results.prediction import ByMixingCurve, MixState
 from pneutouch.spec.material import Material, MixByCurve
 from pneutouch.spec.part import ORingStub
 from pneutouch.spec.printer import Printer
-from pneutouch.wording import data_of
+from pneutouch.units import KPA
+from pneutouch.wording import data_of, rounded
 
 _HINTS: dict[str, dict[str, str]] = data_of(__file__)
 """Remedies in the design by body and rule; a ring and a plug take those of the connector."""
@@ -239,3 +241,23 @@ def _predicted(sensor: Sensor, pressures: list[float], like: SensorPrediction) -
         except (BeyondLimitError, ComputationError):
             continue
     return None
+
+
+def by_mixing_curve(outcomes: Sequence[CurveOutcome]) -> tuple[ByMixingCurve, ...]:
+    """The sensor by every mixing curve of its mix, the softest first."""
+    records = tuple(
+        ByMixingCurve(
+            curve=one.by_curve.curve,
+            place=one.by_curve.place,
+            shear_modulus_MPa=one.by_curve.shear_modulus_MPa.nominal,
+            beyond_last_point=one.by_curve.beyond,
+            rated_pressure_kPa=None if one.rated is None else one.rated / KPA,
+            states=tuple(
+                MixState(state.driving_pressure / KPA, found and found.sensitivity, found and found.force_range[1])
+                for state in one.states
+                for found in (state.figures,)
+            ),
+        )
+        for one in outcomes
+    )
+    return rounded(records, 6)

@@ -1,4 +1,4 @@
-"""The air's path from the base plane to the end of the tube, as round ducts in series with volumes connected to them.
+"""The air's path from the base plane to the gauge, as round ducts in series with volumes connected to them.
 
 Its volume is `internal_volume` plus the tube; the dead volume as drawn follows from it.
 """
@@ -77,7 +77,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class AirPiece:
-    """A round piece of the path, mm: ``name`` is gap, channel, port or tube. A gap is a volume open to the cavity."""
+    """A round piece of the path, mm: ``name`` is gap (a volume open to the cavity), channel, port, tube or adaptor."""
 
     name: str
     length: float
@@ -105,6 +105,8 @@ def air_path(scene: ResolvedDesign, layout: Layout) -> tuple[AirPiece, ...]:
     pieces = [*_gap(scene, layout), *_cylinder("channel", _channel_length(layout), channel), *port]
     tube = scene.design.pneumatics.tube_length_mm
     pieces += _cylinder("tube", tube, math.pi * (0.5 * scene.tube.inner_diameter) ** 2 * tube)
+    for length, bore in scene.design.pneumatics.adaptors_mm or ():
+        pieces += _cylinder("adaptor", length, math.pi * (0.5 * bore) ** 2 * length)
     return tuple(pieces)
 
 

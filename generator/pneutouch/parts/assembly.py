@@ -103,9 +103,10 @@ class Assembly:
 
     @property
     def tube_volume(self) -> float:
-        """Volume of the tube, mm3."""
-        radius = 0.5 * self.scene.tube.inner_diameter
-        return math.pi * radius**2 * self.scene.design.pneumatics.tube_length_mm
+        """Volume of the tube and of the adaptors behind it, mm3."""
+        pneumatics, bore = self.scene.design.pneumatics, self.scene.tube.inner_diameter
+        pieces = [[pneumatics.tube_length_mm, bore], *(pneumatics.adaptors_mm or ())]
+        return math.fsum(math.pi * (0.5 * wide) ** 2 * length for length, wide in pieces)
 
     @property
     def dead_volume(self) -> float:

@@ -145,7 +145,7 @@ class LinePiece:
     """One piece of the gas line."""
 
     part: str
-    """Name of the piece: gap, channel, port or tube."""
+    """Name of the piece: gap, channel, port, tube or adaptor."""
     length_mm: float
     """Length."""
     inner_diameter_mm: float

@@ -8,7 +8,18 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.fields import FieldsError, OneOf, SparseTable, Table, declaration, list_check, name, number, numbers
+from pneutouch.spec.fields import (
+    EntryError,
+    FieldsError,
+    OneOf,
+    SparseTable,
+    Table,
+    declaration,
+    list_check,
+    name,
+    number,
+    numbers,
+)
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.spec.part import PerforatedRing
 
@@ -148,10 +159,17 @@ class Connector(SparseTable):
     )
 
 
+def _adaptors(pieces: list[list[float]]) -> list[list[float]]:
+    for index, piece in enumerate(pieces):
+        if len(piece) != 2 or not all(0.1 <= size <= 1000.0 for size in piece):
+            raise EntryError("an adaptor is [length, bore], each from 0.1 to 1000 mm", index, piece)
+    return pieces
+
+
 class Pneumatics(SparseTable):
     """[pneumatics]: pressures, tube, gauge and gas volume."""
 
-    left_out = ("gauge", "gauge_volume_mL", "injected_volumes_mL", "apex_heights_mm")
+    left_out = ("gauge", "gauge_volume_mL", "injected_volumes_mL", "apex_heights_mm", "adaptors_mm")
 
     driving_pressures_kPa: Annotated[list[float], _within(-100, 1000, "kPa")] = numbers(
         [0.0, 5.0, 12.0, 22.0],
@@ -184,6 +202,12 @@ class Pneumatics(SparseTable):
     )
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
+    )
+    adaptors_mm: Annotated[list[list[float]], AfterValidator(_adaptors)] | None = Field(
+        default=None,
+        max_length=20,
+        json_schema_extra={"unit": "mm", "low": 0.1, "high": 1000.0},
+        description="Reducers and fittings between tube and gauge, from the tube on: [length, bore] of each.",
     )
     gauge: str | None = name(
         None, registry="gauges", help="Pressure gauge at the end of the tube; left out: the paper's, +-100 kPa."

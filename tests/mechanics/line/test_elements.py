@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_banded
-from scipy.special import ive, spherical_jn
+from scipy.special import ive, j0, j1, jn_zeros, spherical_jn
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.line.dynamics import GasLine, on_axis
-from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, second_over_zeroth
+from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, LineEnd, Step, second_over_zeroth
 
 AIR = AirState(0.101325)
 FREQUENCIES = st.floats(0.01, 5000.0)
@@ -185,3 +185,24 @@ def test_the_gas_of_a_half_ball_is_near_that_of_its_ball(frequency):
     dome = GasVolume(2 / 3 * math.pi * radius**3, 3 * math.pi * radius**2)
     exact = (1 + (ADIABATIC - 1) * hemisphere(s[0], radius, AIR.thermal_diffusivity)) / (ADIABATIC * AIR.pressure)
     assert dome.compliance(s, AIR)[0] / dome.volume == pytest.approx(exact, rel=0.03)
+
+
+@given(st.floats(0.02, 1.0))
+def test_the_inertia_of_a_step_is_that_of_the_modes_of_the_wide_duct(ratio):
+    """A piston of the narrow radius in the wide duct, by 4000 modes (Karal): added length over the narrow radius."""
+    zeros = jn_zeros(1, 4000)
+    exact = 4.0 / ratio * np.sum(j1(zeros * ratio) ** 2 / (zeros**3 * j0(zeros) ** 2))
+    assert Step(1.0, 1.0 / ratio).length == pytest.approx(exact, abs=0.006)
+    assert Step(2.0, 2.0 * ratio).length == pytest.approx(2.0 * ratio * Step(1.0, 1.0 / ratio).length, rel=1e-9)
+
+
+def test_a_step_into_a_space_is_a_flanged_end_and_moves_the_resonance_as_a_longer_neck_does():
+    """Helmholtz's resonator: the neck with both its ends, as a neck that is longer by them, without losses to heat."""
+    step = Step(2.0, np.inf)
+    assert step.length == pytest.approx(8.0 / (3.0 * math.pi) * 2.0)
+    air, s, bulb = AirState(0.1), on_axis(np.geomspace(5.0, 60.0, 40)), GasVolume(2e4)
+    neck, longer = GasLine((step, Duct(10.0, 2.0), step, bulb), air), Duct(10.0 + 2.0 * step.length, 2.0)
+    ends, whole = neck.seen(s), GasLine((longer, bulb), air).seen(s)
+    assert np.abs(ends.transfer) == pytest.approx(np.abs(whole.transfer), rel=0.02)
+    same = Step(2.0, 2.0).before(LineEnd(np.ones_like(s), np.ones_like(s)), s, air)
+    assert same.transfer == pytest.approx(np.ones_like(s))

@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Complex
-from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, LineEnd, profiles
+from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, LineEnd, Step, profiles
 
-LineElement = Duct | GasVolume
+LineElement = Duct | GasVolume | Step
 
 
 @dataclass(frozen=True, slots=True)
