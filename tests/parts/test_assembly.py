@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -311,3 +312,13 @@ def test_no_triangle_of_a_luer_lock_vanishes_in_a_file(tolerance):
     assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min() > 1e-5
     _, triangles = welded(body.vertices, body.triangles)
     assert (triangles != np.roll(triangles, 1, axis=1)).all()
+
+
+@pytest.mark.parametrize("seat", ["clamped-flange-M2", "clamped-flange-M2-insert", "clamped-flange-M2-gasket"])
+def test_no_edge_of_a_clamping_ring_that_touches_the_flange_is_sharp(seat):
+    """Corners of the meridian at the base plane: none turns by more than a right angle."""
+    pieces = assemble(load_scene("cast-dome", {"connector.seat": seat})).solid("ring").meridian.pieces
+    for one, other in pairwise([pieces[-1], *pieces]):
+        before, after = (np.subtract(piece.end, piece.start) / piece.length for piece in (one, other))
+        if other.start[1] == 0.0:
+            assert before @ after > -1e-9
