@@ -240,3 +240,15 @@ def test_a_name_of_two_kinds_is_not_copied_by_chance(command, tmp_path):
         assert "ours.toml) and one of the gauges (" in refused.stderr
         assert "give the one to copy a name of its own" in refused.stderr
     assert not (tmp_path / "printprofiles/x.toml").exists()
+
+
+def test_a_new_design_takes_changes_with_its_process_and_writes_nothing_for_a_wrong_one(command, tmp_path):
+    words = ["--process", "filament", "--set", "connector.seat=clamped-flange-M2-gasket"]
+    made = command("new", "soft", *words, "--set", "membrane.inner_radius_mm=8")
+    assert made.returncode == 0, made.stderr
+    written = tomllib.loads((tmp_path / "designs" / "soft.toml").read_text())
+    assert written["connector"]["seat"] == "clamped-flange-M2-gasket" and written["membrane"]["inner_radius_mm"] == 8
+    assert written["print"]["profile"] == "tpu-filament"
+    assert command("check", "soft").returncode == 0
+    wrong = command("new", "other", *words, "--set", "membrane.inner_radius_mm=-8")
+    assert wrong.returncode == 2 and not (tmp_path / "designs" / "other.toml").exists()

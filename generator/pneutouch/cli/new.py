@@ -33,10 +33,8 @@ def new(
             remedy = change_of_copy(from_)
             raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
         made = new_from(from_, name, out, changes(set_))
-    elif set_:
-        raise InputError("no design to change", key="set", remedy="give one with `from`")
     elif name is not None:
-        path, note = new_design(name, design_folder(out), process, material)
+        path, note = new_design(name, design_folder(out), process, material, changes(set_))
         made = NewFile(path, ("check", name if out is None else str(path)))
     else:
         raise InputError("no name for the new design", remedy="give a name, or an example with `from`")

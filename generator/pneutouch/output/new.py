@@ -49,23 +49,25 @@ class NewFile:
 
 
 def new_design(
-    name: str, folder: Path, process: str | None = None, material: str | None = None
+    name: str, folder: Path, process: str | None = None, material: str | None = None, changes: Changes | None = None
 ) -> tuple[Path, str | None]:
-    """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
+    """Write ``folder/name.toml`` with every key, its default or its value in ``changes``, unit, bounds and help; never
+    over a file.
 
     With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
     returned with the path (else None). Raises InputError if no profile does.
     """
     kept = f"The values are the defaults, except the port: {PRINTED_PORT}, which every printer makes"
     note = f"Every key may be left out. {kept}"
-    if process is None and material is None:
-        text = design_template(name, {"connector": {"port": PRINTED_PORT}}, f"{note}.")
-        return write_design(name, folder, text), None
-
-    library = Library.default()
-    values = process_values(process, material, library)
-    path = write_design(name, folder, design_template(name, values, f"{note}, and what process and resin need."))
-    return path, profile_note(values, library, process=process, material=material)
+    library, free = Library.default(), process is None and material is None
+    values = {"connector": {"port": PRINTED_PORT}} if free else process_values(process, material, library)
+    if changes:
+        DesignSource(name, values, name).changed(changes)
+        values, note = override(values, changes, DesignFile), f"{note}, and the changes asked for"
+    path = write_design(
+        name, folder, design_template(name, values, f"{note}{'' if free else ', and what process and resin need'}.")
+    )
+    return path, None if free else profile_note(values, library, process=process, material=material)
 
 
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:

@@ -101,6 +101,7 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         facts=[] if mould is None else mould_rows(mould),
         steps=steps(sheet),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
+        in_all=_time(math.fsum(job.time_min or math.nan for job in sheet.estimates)),
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
         glue=GLUES[glue].title
@@ -115,7 +116,7 @@ def _swaths(job: JobEstimate) -> str:
 
 
 def _time(time_min: float | None) -> str:
-    if time_min is None:
+    if time_min is None or math.isnan(time_min):
         return "not known"
     minutes = round(time_min)
     return f"{minutes} min" if minutes < 100 else f"{time_min / 60:.1f} h"
