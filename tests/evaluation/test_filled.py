@@ -1,4 +1,4 @@
-"""Intervals of states given by injected gas or by a height: the solid's derivatives with the sources of the sensor."""
+"""Intervals by the solid's derivatives: of states by injected gas or by a height, of a vacuum, of uncovered sensors."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation import evaluate
+from pneutouch.evaluation.filled import driven_uncertainties
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 
 PRESSURE, APEX = "driving_pressure_kPa", "apex_height_outer_mm"
@@ -51,3 +52,24 @@ def test_a_vacuum_and_another_contact_have_no_interval_of_the_pressure():
     assert APEX in known(vacuum)[0]
     gripping = evaluate("paper-dome", {INJECTED: [1.0], "contact.friction": 0.5, "indentation.depth_mm": 3.0})
     assert gripping.filled_uncertainty[0].unknown == gripping.sensor.protocol.other_contact
+
+
+@pytest.mark.parametrize("name", ["paper-dome", "fingertip-dome"])
+def test_two_models_give_the_same_intervals_at_a_driving_pressure(name):
+    """The atlas's derivatives and the solid's, which share no code but the sources: half widths in logarithms."""
+    evaluation = evaluate(name, {"pneumatics.driving_pressures_kPa": [10.0]})
+    (usual,) = evaluation.uncertainty
+    resins = list(evaluation.resins.values())
+    (other,) = driven_uncertainties(evaluation.prediction, evaluation.sensor, evaluation.scene, resins)
+    for figure, close in ((SENSITIVITY_KEY, 0.01), ("limit_pressure_kPa", 1e-3), (STIFFNESS_KEY, 0.05), (APEX, 0.03)):
+        one, two = (np.log(said.known[figure].high / said.known[figure].value) for said in (usual, other))
+        assert two == pytest.approx(one, rel=close)
+
+
+def test_a_vacuum_and_a_wall_outside_the_tables_have_intervals():
+    vacuum = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [-4.0, 0.0]}).uncertainty
+    thick = evaluate("paper-dome", {"membrane.wall_thickness_mm": 5.5, "pneumatics.driving_pressures_kPa": [5.0]})
+    for record in (*vacuum, *thick.uncertainty):
+        figure = record.known[SENSITIVITY_KEY]
+        assert figure.low < figure.value < figure.high
+    assert vacuum[0].known["limit_pressure_kPa"] == vacuum[1].known["limit_pressure_kPa"]

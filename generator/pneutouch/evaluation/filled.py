@@ -1,125 +1,151 @@
-"""Uncertainty of states given by their filling: the sources of the sensor, with the derivatives of the solid.
+"""Uncertainty where the atlas has no states: the sources of the sensor, with the derivatives of the solid.
 
-The atlas has states by driving pressure alone. Here the solid finds each state again with every input changed by its
-spread, the filling kept, which counts as exact. The pressure of such a state is a result: it has the sources of the
-limit pressure, which acts through the same wall.
+The solid finds each state again with every input changed by its spread. A filling counts as exact; its pressure then
+is a result and has the sources of the limit pressure, which acts through the same wall.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError, InputError
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, fillings_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import DIGITS, NOTHING, TREND, values_of
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, moved, unit_step
-from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected.figures import state_logs
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.models.choice import stated_error
-from pneutouch.mechanics.models.solid import MODEL
-from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.models.solid import MODEL, solid_result
+from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.mechanics.uncertainty.document import document, text
-from pneutouch.mechanics.uncertainty.propagate import LIMIT, STEP, Derivatives, by_input, combined, from_changes
+from pneutouch.mechanics.uncertainty.propagate import LIMIT, STEP, Budget, by_input, combined, from_changes
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.uncertainty import UncertaintyRecord
+from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 from pneutouch.wording import rounded
 
 PRESSURE_KEY = "driving_pressure_kPa"
-"""Name of the figure that stands in the place of the limit pressure."""
+"""Name of the figure of a filled state that stands in the place of the limit pressure."""
 
-_APEX = FIGURES.index("apex_height_outer_mm")
-Named = TypeVar("Named")
+_LIMIT_KEY, _APEX = FIGURES[LIMIT], FIGURES.index("apex_height_outer_mm")
+Again = Callable[[Sensor, float], Array]
+"""Logarithms (figures, n) of the figures of n states of a sensor, driving pressures times a factor; NaN for none."""
 
 _EXACT = "the filling counts as exact; a syringe adds its own scale to it"
+_BY_SOLID = "the derivatives are the solid's, over the spread of each input"
 
 
 def filled_uncertainties(evaluation: Evaluation) -> tuple[UncertaintyRecord, ...]:
-    """One record for each state given by its filling, or why it is ``unknown``; figures as in `evaluation.uncertainty`,
-    and the driving pressure."""
+    """One record for each state given by its filling, its pressure among the figures; or the reason for none."""
     prediction, sensor, scene = evaluation.prediction, evaluation.sensor, evaluation.scene
-    states, contact = prediction.filled, sensor.protocol.other_contact
-    why = TREND if prediction.model == "membrane" else contact
+    states, fillings = prediction.filled, fillings_of(scene)
+    why = TREND if prediction.model == "membrane" else sensor.protocol.other_contact
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
-    batch = batch_of(sensor, [state.driving_pressure for state in states])
+    at = [state.driving_pressure for state in states]
+    here = _logs(states, at, sensor)
+
+    def again(other: Sensor, factor: float) -> Array:
+        return here if factor != 1.0 else np.hstack([_found(_filled, other, filling) for filling in fillings])
+
+    budget = _budget(sensor, scene, list(evaluation.resins.values()), at, here, again)
+    known = [{**values_of(prediction, state), _LIMIT_KEY: state.driving_pressure / KPA} for state in states]
+    return tuple(_records(budget, known, _EXACT, scene, PRESSURE_KEY))
+
+
+def driven_uncertainties(
+    prediction: SensorPrediction, sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material]
+) -> tuple[UncertaintyRecord, ...]:
+    """One record for each state of the solid at a driving pressure, where the atlas covers not all."""
+    at = [state.driving_pressure for state in prediction.states]
+
+    def again(other: Sensor, factor: float) -> Array:
+        return np.hstack([_found(_driven, other, factor * pressure) for pressure in at])
+
+    here = _logs(prediction.states, [prediction.limits.limit_point] * len(at), sensor)
+    budget = _budget(sensor, scene, materials, at, here, again)
+    return tuple(_records(budget, [values_of(prediction, state) for state in prediction.states], _BY_SOLID, scene))
+
+
+def _budget(
+    sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material], at: list[float], here: Array, again: Again
+) -> Budget:
+    """Budget of states ``at`` n pressures, MPa, with the logarithms ``here`` of their figures, (figures, n)."""
+    batch = batch_of(sensor, at)
     of_sensor = sources(
         batch,
         scene.membrane_material,
         scene.printer,
         near_paper=is_near_paper(sensor),
-        errors=model_errors(scene.membrane_material, list(evaluation.resins.values())),
-        numerical={SENSITIVITY_KEY: stated_error("solid", sensor), FIGURES[LIMIT]: LIMIT_DISCRETISATION},
+        errors=model_errors(scene.membrane_material, materials),
+        numerical={SENSITIVITY_KEY: stated_error("solid", sensor), _LIMIT_KEY: LIMIT_DISCRETISATION},
         calibration=scene.calibration,
     )
-    solved = _solver(sensor, fillings_of(scene), states)
-    budget = combined(of_sensor, _derivatives(batch, *by_input(batch, of_sensor), solved), None)
-    calibrated, records = scene.calibration is not None, []
-    for row, state in enumerate(states):
-        values = {**values_of(prediction, state), FIGURES[LIMIT]: state.driving_pressure / KPA}
-        record = document(budget, row, values, (_EXACT,), calibrated=calibrated)
-        figures, elasticities = _renamed(record.figures), _renamed(record.elasticities)
-        summary = text(budget, row, calibrated=calibrated)
-        record = replace(record, figures=figures, elasticities=elasticities, summary=summary)
-        records.append(rounded(record, DIGITS, NOTHING))
-    return tuple(records)
-
-
-def _renamed(figures: Mapping[str, Named] | None) -> dict[str, Named]:
-    """Figures by name, with the name of the pressure in place of that of the limit pressure."""
-    return {PRESSURE_KEY if name == FIGURES[LIMIT] else name: value for name, value in (figures or {}).items()}
-
-
-def _solver(sensor: Sensor, fillings: list[Filling], states: tuple[SensorState, ...]) -> Callable[[str, float], Array]:
-    """Solver for `_derivatives`: logarithms of the figures of all states with one input of the sensor changed."""
-    bare, here = sensor.replace(waves=0), _logs(states, sensor)
+    standard, kurtosis = by_input(batch, of_sensor)
+    near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)
+    step, bare = np.maximum(near, far), sensor.replace(waves=0)
 
     def solved(name: str, by: float) -> Array:
-        if by == 0.0 or name == "driving_pressure":
-            return here
+        if name == "driving_pressure":
+            return again(bare, float(np.exp(by)))
         if name == "dead_volume" and sensor.gas.dead_volume + by < 0.0:
             # There is no gas to take away: the change is taken as linear.
             return np.asarray(2.0 * here - solved(name, -by))
-        return np.hstack([_one(_moved(bare, name, by), filling) for filling in fillings])
+        return again(_moved(bare, name, by), 1.0)
 
-    return solved
-
-
-def _derivatives(
-    batch: SensorBatch, standard: Array, kurtosis: Array, solved: Callable[[str, float], Array]
-) -> Derivatives:
-    """As `propagate.derivatives`, of n states: ``solved`` gives the logarithms of the figures, (figures, n), with an
-    input (of `INPUTS`) changed by a number as in `moved`, the same for all; NaN for one that it does not find."""
-    near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)
-    small = np.maximum(near, far)
-    here = solved(INPUTS[0], 0.0)
-    beside = np.array([[solved(n, s * by) for s in (1.0, -1.0)] for n, by in zip(INPUTS, small.tolist(), strict=True)])
-    beside, ratio = beside - here, (far / small)[:, None, None, None]
-    wide = np.broadcast_to((far >= near)[:, None], kurtosis.shape)
-    steps = np.broadcast_to(small[:, None], kurtosis.shape)
-    return from_changes(here, (beside, steps), (beside * ratio, wide), batch.dead_volume, standard, kurtosis)
+    ends = [[solved(name, sign * by) for sign in (1.0, -1.0)] for name, by in zip(INPUTS, step.tolist(), strict=True)]
+    change = np.array(ends) - here
+    steps, wide = (np.broadcast_to(each[:, None], kurtosis.shape) for each in (step, far >= near))
+    spread = change * (far / step)[:, None, None, None]
+    slopes = from_changes(here, (change, steps), (spread, wide), batch.dead_volume, standard, kurtosis)
+    return combined(of_sensor, slopes, None)
 
 
-def _one(sensor: Sensor, filling: Filling) -> Array:
+def _records(
+    budget: Budget, known: Sequence[dict[str, float]], note: str, scene: ResolvedDesign, own: str = _LIMIT_KEY
+) -> Iterator[UncertaintyRecord]:
+    """Records of the states, ``known`` by the model; ``own``: name of what stands in place of the limit pressure."""
+    names, calibrated = {_LIMIT_KEY: own}, scene.calibration is not None
+    for row, values in enumerate(known):
+        record = document(budget, row, values, (note,), calibrated=calibrated)
+        figures = {names.get(name, name): figure for name, figure in record.known.items()}
+        slopes = {names.get(name, name): slope for name, slope in (record.elasticities or {}).items()}
+        summary = text(budget, row, calibrated=calibrated)
+        yield rounded(replace(record, figures=figures, elasticities=slopes, summary=summary), DIGITS, NOTHING)
+
+
+def _found(solve: Callable[..., Array], *given: object) -> Array:
     try:
-        return _logs(MODEL.filled(sensor, [filling]))
-    except (ComputationError, InputError):
+        return solve(*given)
+    except PneutouchError:
         return np.full((len(FIGURES), 1), np.nan)
 
 
-def _logs(states: tuple[SensorState, ...], sensor: Sensor | None = None) -> Array:
-    """Logarithms (figures, n) of the figures, with the driving pressure in the place of the limit pressure."""
+def _filled(sensor: Sensor, filling: Filling) -> Array:
+    states = MODEL.filled(sensor, [filling])
+    return _logs(states, [state.driving_pressure for state in states])
+
+
+def _driven(sensor: Sensor, pressure: float) -> Array:
+    result = solid_result(sensor, np.array([pressure]), past_limit=1.0)
+    return _logs(result.states, [result.limits.limit_point])
+
+
+def _logs(states: Sequence[SensorState], limits: Sequence[float | None], sensor: Sensor | None = None) -> Array:
+    """Logarithms (figures, n) of the figures, with ``limits`` (MPa) in the place of the limit pressure."""
     logs = state_logs(states, None if sensor is None else sensor.correction)
     with np.errstate(invalid="ignore", divide="ignore"):
-        logs[[LIMIT, _APEX]] = np.log([(s.driving_pressure / KPA, s.apex_outer) for s in states]).T
+        logs[LIMIT] = np.log(np.array(limits, dtype=float) / KPA)
+        logs[_APEX] = np.log([state.apex_outer for state in states])
     return np.where(np.isfinite(logs), logs, np.nan)
 
 

@@ -51,8 +51,6 @@ def notes_on(sensor: Sensor) -> tuple[str, ...]:
     return (*graded, *filleted, *((_WORDS["law"],) if sensor.wall.fitted else ()))
 
 
-# The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
-
 _VACUUM = "the derivatives are the atlas's, which has no states below ambient pressure"
 
 DIGITS = 6
@@ -79,6 +77,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     The atlas must cover the sensor under a plate without friction; the solid computes the effect of other contact."""
     if model == "membrane":
         return TREND
+    # The atlas loads scipy, for which a prediction by the membrane alone must not pay.
     from pneutouch.mechanics.atlas.coverage import outside_atlas, under_plate
 
     why = outside_atlas(under_plate(sensor))
@@ -180,7 +179,14 @@ def uncertainties(
     blown = tuple(state for state in prediction.states if state.driving_pressure >= 0.0)
     known = iter(_of_blown(replace(prediction, states=blown), sensor, scene, resins, samples) if blown else ())
     sucked = UncertaintyRecord(unknown=_VACUUM)
-    return tuple(sucked if state.driving_pressure < 0.0 else next(known) for state in prediction.states)
+    records = tuple(sucked if state.driving_pressure < 0.0 else next(known) for state in prediction.states)
+    covered = all(one.unknown is None for one in records)
+    if covered or prediction.model != "solid" or sensor.dome.flange or sensor.protocol.other_contact:
+        # On a flange as printed the solid would take minutes.
+        return records
+    from pneutouch.evaluation.filled import driven_uncertainties
+
+    return driven_uncertainties(prediction, sensor, scene, list(resins().values()))
 
 
 def _of_blown(
