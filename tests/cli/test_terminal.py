@@ -52,9 +52,9 @@ def completed(line):
     [
         ("pneutouch predict paper-d", ["paper-dome"]),
         ("pneutouch charac", ["characterize"]),
-        ("pneutouch coupons --profile objet260-c", ["objet260-connex"]),
+        ("pneutouch coupons --profile objet260-c", ["objet260-connex", "objet260-connex1", "objet260-connex3"]),
         ("pneutouch check x --set membrane.mat", ["membrane.material="]),
-        ("pneutouch select --profile objet260-c", ["objet260-connex"]),
+        ("pneutouch select --profile objet260-c", ["objet260-connex", "objet260-connex1", "objet260-connex3"]),
         ("pneutouch select --material TangoPlus,FLX9940,Agilus30", ["TangoPlus,FLX9940,Agilus30"]),
         ("pneutouch select --base paper-d", ["paper-dome"]),
         ("pneutouch coupons --material FLX9960,TangoP", ["FLX9960,TangoPlus"]),

@@ -54,7 +54,8 @@ def _run() -> Iterator[tuple[float, float, float, float]]:
     """Time in s, position in mm, force in N and pressure in kPa: presses of two seconds."""
     for k in itertools.count():
         depth = 5 * abs((k % 2000) / 1000 - 1)
-        yield k / 1000, depth, 0.25 * depth**1.5, 12 + 0.6 * depth**1.5
+        force = 0.25 * depth**1.5
+        yield k / 1000, depth, force, 12 + 2.4 * force + 0.02 * force**2
 
 
 def run_rows(path: Path) -> None:

@@ -102,7 +102,7 @@ def test_a_fraction_is_found_at_which_the_sensitivity_is_met_exactly():
     """Radius, wall and pressure all given: only the mix is free, and no catalogue resin does it."""
     given = {"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5}
     wanted = {"sensitivity_kPa_per_N": 1.8, "driving_pressure_kPa": 12.0, "tolerance_percent": 1.0}
-    content = {"target": wanted, "given": given, "setting": {"base": "paper-dome"}}
+    content = {"target": wanted, "given": given, "setting": {"base": "paper-dome", "profile": "j735"}}
     assert not select(Target.model_validate(content), "test").answer.designs
     mixed = select(Target.model_validate({**content, "given": {**given, "mix": "TangoPlus+VeroClear"}}), "test")
     assert len(mixed.answer.designs) == 1
@@ -124,7 +124,8 @@ def test_mixes_keep_every_wish_and_limit_that_resins_keep():
         "force_range_N": 15.0,
         "max_diameter_mm": 25.0,
     }
-    found = select(Target.model_validate({"target": wanted, "given": {"mix": "TangoPlus+VeroClear"}}), "test")
+    given, setting = {"mix": "TangoPlus+VeroClear"}, {"profile": "j735"}
+    found = select(Target.model_validate({"target": wanted, "given": given, "setting": setting}), "test")
     assert len(found.answer.designs) >= 3
     for choice in found.answer.designs:
         assert min(choice.margins.values()) >= 0

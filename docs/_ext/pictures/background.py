@@ -215,6 +215,7 @@ def graded() -> str:
             changes = {
                 "membrane.wall_thickness_mm": 1.2,
                 "membrane.material": material,
+                "print.profile": "j735",
                 "pneumatics.driving_pressures_kPa": pressures_kPa,
             }
             states = evaluate("paper-dome", changes, model="solid").prediction.states

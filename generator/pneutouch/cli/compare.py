@@ -1,13 +1,14 @@
 """``pneutouch compare``: designs, builds and measurements side by side."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.terminal import bar, report_next, set_words, table_text
-from pneutouch.report import comparison_words
-from pneutouch.results.comparison import ComparisonRecord, RowRecord
+
+if TYPE_CHECKING:
+    from pneutouch.results.comparison import ComparisonRecord, RowRecord
 
 parameter = parameters_of(__file__)
 
@@ -46,8 +47,11 @@ def compare(
             report_next("export-reader", uncalibrated, *set_words(set_, calibration))
 
 
-def comparison_text(comparison: ComparisonRecord) -> str:
+def comparison_text(comparison: "ComparisonRecord") -> str:
     """Inputs that differ, figures with intervals, differences that exceed their uncertainty, and assumptions."""
+    # Names are completed without numpy, which the records load.
+    from pneutouch.report import comparison_words
+
     labels = comparison_words.labels(comparison)
     sources = (f", {one.source}" if one.source not in ("", one.label) else "" for one in comparison.compared)
     lines = [f"{one.label}: {one.kind}{source}" for one, source in zip(comparison.compared, sources, strict=True)]
@@ -64,7 +68,9 @@ def comparison_text(comparison: ComparisonRecord) -> str:
     return "\n".join([*lines, comparison.criterion, *comparison.notes])
 
 
-def _row(row: RowRecord) -> list[str]:
+def _row(row: "RowRecord") -> list[str]:
+    from pneutouch.report import comparison_words
+
     values = [f"{value} ({interval})" if interval else value for value, interval in comparison_words.figure_cells(row)]
     differences = [
         f"{percent} ({interval}): {word}" if interval else f"{percent}: {word}" if percent != word else word
