@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.evaluation.result import by_mixing_curve
 from pneutouch.evaluation.sheet import sheet_data
+from pneutouch.evaluation.subject import by_mixing_curve
 from pneutouch.report.blocks import Items, SheetTable, found
 from pneutouch.report.conditions import mixing_section
 from pneutouch.results.record import plain as data

@@ -322,3 +322,5 @@ def test_no_edge_of_a_clamping_ring_that_touches_the_flange_is_sharp(seat):
         before, after = (np.subtract(piece.end, piece.start) / piece.length for piece in (one, other))
         if other.start[1] == 0.0:
             assert before @ after > -1e-9
+    (lip,) = assemble(load_scene("cast-dome", {"connector.seat": seat})).solid("ring").meridian.tagged("lip")
+    assert lip.length >= 2 * 0.15

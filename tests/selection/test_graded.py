@@ -129,8 +129,8 @@ def test_mixes_keep_every_wish_and_limit_that_resins_keep():
     assert len(found.answer.designs) >= 3
     for choice in found.answer.designs:
         assert min(choice.margins.values()) >= 0
-        # Within 0.25 %: where no fraction meets it at round sizes, the size that did is kept.
-        assert choice.margins["sensitivity"] > 0.95
+        # Within 0.01 %, or within 0.5 % where no fraction meets it at round sizes.
+        assert choice.margins["sensitivity"] > 0.9
         sensor = found.sensor_of(choice)
         assert sensor.wall.shear_modulus == choice.resin.shear_modulus
         assert 2 * (sensor.dome.inner_radius + sensor.dome.wall_thickness) <= 25.0

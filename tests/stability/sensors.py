@@ -25,8 +25,9 @@ PLATE = 30.0 / 9.25
 def random_sensors(
     library: Library, count: int, seed: int, walls: tuple[float, float] = (0.05, 0.4), depth: float = 0.5
 ) -> Iterator[tuple[str, Study]]:
-    """Label and study of `count` sensors: any printed elastomer of a neo-Hookean law, which has a limit point, R0 4 to 30 mm, wall ratio within `walls`, driving pressure to
-    80 % of the limit, dead volume to 5 mL, pressed to `depth` R0 in 1 to 19 steps.
+    """Label and study of `count` sensors: any printed elastomer of a neo-Hookean law, which has a limit point, R0 4 to
+    30 mm, wall ratio within `walls`, driving pressure to 80 % of the limit, dead volume to 5 mL, pressed to `depth` R0
+    in 1 to 19 steps.
     """
     printed = library.all("materials", Material).items()
     resins = [(k, m) for k, m in printed if m.kind == "elastomer" and not m.is_cast and m.law is None]

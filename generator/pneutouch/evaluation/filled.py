@@ -89,6 +89,7 @@ def _budget(
         errors=model_errors(scene.membrane_material, materials),
         numerical={SENSITIVITY_KEY: stated_error("solid", sensor), _LIMIT_KEY: LIMIT_DISCRETISATION},
         calibration=scene.calibration,
+        anywhere=scene.design.contact.anywhere,
     )
     standard, kurtosis = by_input(batch, of_sensor)
     near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
+
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
@@ -253,3 +255,11 @@ class PressedView:
     normals: Array
     pressure_kPa: Array
     lines: tuple[Array, ...]
+
+
+def force_at(state: SensorState, indentation: float) -> float:
+    """Contact force (N) at an indentation, mm: linear between the steps, and on to the end of the range."""
+    travel, force = state.indentation.tolist(), state.force.tolist()
+    if state.figures is not None and state.range_end > travel[-1]:
+        travel, force = [*travel, state.range_end], [*force, state.figures.force_range[1]]
+    return float(np.interp(indentation, travel, force))

@@ -73,7 +73,7 @@ def is_near_paper(sensor: Sensor) -> bool:
     """True if a sensor is so near the paper's that a model's error on the paper's sensor applies to it."""
     low, high = NEAR_WALL
     dome, least = sensor.dome, NEAR_DEAD_VOLUME * sensor.dome.shape.cavity_volume
-    close = low <= dome.wall_thickness / dome.inner_radius <= high and no_hemisphere(dome.shape) is None
+    close = low <= dome.wall_thickness / dome.inner_radius <= high and no_hemisphere(dome.shape.plain) is None
     return close and sensor.protocol.other_contact is None and sensor.gas.dead_volume <= least and dome.flange is None
 
 

@@ -45,10 +45,9 @@ _WORDS: dict[str, str] = data_of(__file__)
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
-    """Notes on the uncertainty of a graded wall, a fitted law and a fillet; empty for other domes."""
+    """Notes on the uncertainty of a graded wall and of a fitted law; empty for other walls."""
     graded = () if sensor.wall.grade is None else (_WORDS["graded"].format(gap=GAP, steep=STEEP_GAP),)
-    filleted = () if sensor.dome.shape.plain is sensor.dome.shape else (_WORDS["filleted"],)
-    return (*graded, *filleted, *((_WORDS["law"],) if sensor.wall.fitted else ()))
+    return (*graded, _WORDS["law"]) if sensor.wall.fitted else graded
 
 
 _VACUUM = "the derivatives are the atlas's, which has no states below ambient pressure"
@@ -180,7 +179,7 @@ def uncertainties(
     known = iter(_of_blown(replace(prediction, states=blown), sensor, scene, resins, samples) if blown else ())
     sucked = UncertaintyRecord(unknown=_VACUUM)
     records = tuple(sucked if state.driving_pressure < 0.0 else next(known) for state in prediction.states)
-    covered = all(one.unknown is None for one in records)
+    covered = all(one.unknown is None for one in records) and sensor.dome.shape.plain is sensor.dome.shape
     if covered or prediction.model != "solid" or sensor.dome.flange or sensor.protocol.other_contact:
         # On a flange as printed the solid would take minutes.
         return records

@@ -20,16 +20,9 @@ from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorMo
 from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Filling, IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
+from pneutouch.wording import data_of
 
-_CLAMPED_BASE = "rim clamped at the base plane, as in the paper"
-_CLAMPED_FLANGE = "flange clamped on the faces that the connector holds, its top free"
-
-_PLATE = "rigid, flat, frictionless plate"
-
-_COMMON_ASSUMPTIONS = (
-    "ideal gas at constant temperature (Boyle): slow contact; how far adiabatic air differs follows from wall and gas",
-    "elastic wall: no rate, relaxation or temperature dependence of the resin",
-)
+_WORDS = data_of(__file__)
 
 
 def predict(
@@ -70,32 +63,38 @@ def predict(
         errors = replace(errors, model_choice=why, summary=(f"Model {chosen.name}: {why}.", *errors.summary))
     # The factors were found against the solid's answers: the membrane's errors are others.
     correction = sensor.correction if chosen.correctable else ResponseCorrection()
-    held = _CLAMPED_FLANGE if chosen.holds_flange and sensor.dome.flange is not None else _CLAMPED_BASE
+    held = _WORDS["flange" if chosen.holds_flange and sensor.dome.flange is not None else "base"]
     dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA
     gas = f"dead volume {dead / ML:.4g} mL, ambient pressure {ambient_kPa:g} kPa"
     filled: tuple[SensorState, ...] | None = ()
     if fillings:
         filled = chosen.closed(closure).filled(sensor, fillings)
         filled = model_named(usual_model(sensor)).filled(sensor, fillings) if filled is None else filled
+    limits = result.limits
+    if limits.vacuum is None and any(state.driving_pressure < 0.0 for state in filled or ()):
+        from pneutouch.mechanics.models.filling import buckling
+        from pneutouch.mechanics.models.solid import solid_probe
+
+        limits = replace(limits, vacuum=buckling(sensor, solid_probe(sensor).solid))
     return SensorPrediction(
         design=design,
         model=chosen.name,
         closure=closure if chosen.name == "membrane" else None,
         error_estimate=errors,
         limit_point=result.limit_point,
-        limits=result.limits,
+        limits=limits,
         dead_volume=dead,
         inflation=result.inflation,
         states=tuple(state.corrected(correction).judged() for state in result.states),
         filled=tuple(state.corrected(correction).judged() for state in filled or ()),
-        assumptions=(*chosen.assumptions(sensor), held, contact_words(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
+        assumptions=(*chosen.assumptions(sensor), held, contact_words(sensor.protocol), *_WORDS["always"], gas),
     )
 
 
 def contact_words(protocol: IndentationProtocol) -> str:
     """Object that presses the sensor, its friction, place and motion, in words."""
     if protocol.body is None and not protocol.friction and not protocol.off_axis:
-        return _PLATE
+        return str(_WORDS["plate"])
     body = "flat plate" if protocol.body is None else protocol.body.label
     hold = f"friction coefficient {protocol.friction:g} (Coulomb)" if protocol.friction else "frictionless"
     hold = "a surface that grips" if protocol.friction == np.inf else hold

@@ -30,9 +30,9 @@ _WORTH = 1.05
 
 
 BUCKLING = "buckling under vacuum"
-BUCKLING_SLOPE = 2.5
+BUCKLING_SLOPE = 3.0
 """d ln of the pressure at which an emptied dome buckles / d ln wall ratio, at most: 2 for a thin sphere (Zoelly, 1915);
-the solid has 2.0 to 2.2 for walls of 0.06 to 0.24 R0 and 2.4 at 0.27 R0 (`tests/mechanics/solid/test_filling.py`)."""
+the solid has 2.0 to 2.8 for walls of 0.06 to 0.28 R0 and less above (`tests/mechanics/solid/test_filling.py`)."""
 
 
 class UncertainLimit(NamedTuple):
@@ -185,6 +185,7 @@ def ratings(
         intervals = [UncertainLimit(n, v, v / f, v * f) for (n, v), f in zip(named[k], factors, strict=True)]
         ordered = tuple(sorted(intervals, key=lambda limit: limit.low))
         least, weaker = limits[k].vacuum, float(np.exp(COVERAGE * buckling.standard[k]))
-        vacuum = None if least is None else UncertainLimit(BUCKLING, least, least * weaker, least / weaker)
+        absolute = RATED_SHARE * (least or 0.0) / weaker > -sensors[k].gas.ambient_pressure
+        vacuum = UncertainLimit(BUCKLING, least, least * weaker, least / weaker) if least and absolute else None
         found.append(Rating(rated[k], ordered, measured[k], outside_fit(sensors[k]) is None, vacuum))
     return found

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from pneutouch.catalogue import KINDS, DesignSource, Library, user_folder
+from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene, user_folder
 from pneutouch.catalogue.library import COMMANDS, examples, is_specimen
 from pneutouch.catalogue.printers import casting_missing, makers, own_profile, uncast
 from pneutouch.errors import InputError, nearest
@@ -62,8 +62,16 @@ def new_design(
     library, free = Library.default(), process is None and material is None
     values = {"connector": {"port": PRINTED_PORT}} if free else process_values(process, material, library)
     if changes:
-        DesignSource(name, values, name).changed(changes)
-        values, note = override(values, changes, DesignFile), f"{note}, and the changes asked for"
+        taken = next((key for key in ("print.profile", "membrane.material") if key in changes and not free), None)
+        if taken is not None:
+            raise InputError(
+                "process and resin come by their own options", key="set", value=taken, remedy="leave it out"
+            )
+        load_scene(DesignSource(name, values, name), changes, library)
+        values, note = (
+            override(values, changes, DesignFile),
+            "Every key may be left out. The values are the defaults and what was asked for",
+        )
     path = write_design(
         name, folder, design_template(name, values, f"{note}{'' if free else ', and what process and resin need'}.")
     )

@@ -167,7 +167,7 @@ def _making(sheet: SheetData) -> list[SheetBlock]:
         *section(
             print_sheet.making_title(sheet.pour),
             SheetTable(print_sheet.body_rows(sheet), bodies),
-            Items(print_sheet.steps(sheet), numbered=True),
+            Items([step.replace("`", "") for step in print_sheet.steps(sheet)], numbered=True),
         ),
         *section("Findings of the print rules", SheetTable(findings, head)),
     ]

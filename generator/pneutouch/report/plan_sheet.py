@@ -4,16 +4,9 @@ from itertools import groupby
 
 from pneutouch.report.pages import filled
 from pneutouch.results.plan import ExpectedPoint, PlannedCampaign, PlannedRun
-from pneutouch.wording import counted, tenths_below
+from pneutouch.wording import counted, data_of, tenths_below
 
-_WORDS = {
-    "leak": "Leak",
-    "injection": "Dead volume",
-    "steps": "Sensitivity",
-    "loop": "Hysteresis",
-    "saturation": "Saturation",
-    "relaxation": "Relaxation",
-}
+_WORDS: dict[str, str] = data_of(__file__)
 
 
 def plan_sheet(plan: PlannedCampaign) -> str:

@@ -101,7 +101,8 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         facts=[] if mould is None else mould_rows(mould),
         steps=steps(sheet),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
-        in_all=_time(math.fsum(job.time_min or math.nan for job in sheet.estimates)),
+        plate_mm=assembly.layout.plate_high - assembly.layout.plate_low,
+        in_all=_time(math.fsum(math.nan if job.time_min is None else job.time_min for job in sheet.estimates)),
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
         glue=GLUES[glue].title

@@ -11,6 +11,7 @@ from pneutouch.formats import problem_of
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.spec.grade import ResinOrMix
+from pneutouch.wording import data_of
 
 ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction"]
 
@@ -19,13 +20,7 @@ RelativeError = Annotated[float, Field(ge=0, le=2)]
 HeldOutError = Annotated[float, Field(ge=-0.9, le=10)]
 DrivingPressure = Annotated[float, Field(ge=0, le=1000)]
 
-_MOST_VARIANCE = {
-    "shear_modulus_MPa": 4.0,
-    "wall_thickness_mm": 4.0,
-    "dead_volume_mL": 100.0,
-    "contact_offset_mm": 100.0,
-    "friction": 4.0,
-}
+_MOST_VARIANCE: dict[str, float] = data_of(__file__)
 """Greatest variances in a covariance, in the units of `SensorCalibration`: standard deviations of a factor of 7, 10 mL,
 10 mm and 2. A fit with more has not seen the parameter, and figures by it would not be finite."""
 

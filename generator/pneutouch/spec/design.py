@@ -161,8 +161,8 @@ class Connector(SparseTable):
 
 def _adaptors(pieces: list[list[float]]) -> list[list[float]]:
     for index, piece in enumerate(pieces):
-        if len(piece) != 2 or not all(0.1 <= size <= 1000.0 for size in piece):
-            raise EntryError("an adaptor is [length, bore], each from 0.1 to 1000 mm", index, piece)
+        if len(piece) != 2 or not all(0.1 <= size <= 1000.0 for size in piece) or piece[1] > 50.0:
+            raise EntryError("an adaptor is [length, bore], from 0.1 to 1000 and 50 mm", index, piece)
     return pieces
 
 

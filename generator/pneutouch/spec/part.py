@@ -22,7 +22,6 @@ class Insert(Table):
     """A threaded insert of brass that is melted into the hole of a thermoplastic body; its hole is the part's."""
 
     title: str = Field(description="Name in a list to buy.")
-    wall: Length = Field(description="Least plastic around its hole.")
     iron: str = Field(description="Temperature of the soldering iron that sets it, with its source.")
 
 

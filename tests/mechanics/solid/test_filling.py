@@ -142,14 +142,46 @@ def buckles_at(sensor):
     return predict("", sensor.replace(depth=1.0), [-1e-4]).limits.vacuum
 
 
-@pytest.mark.parametrize("ratio", [0.06, 0.1, 0.16, 0.24])
+@pytest.mark.parametrize("ratio", [0.06, 0.1, 0.16, 0.24, 0.28, 0.33])
 def test_buckling_follows_the_modulus_and_a_power_of_the_wall_ratio(ratio):
     """Zoelly's sphere: the second power of a thin wall's ratio; what the rating's interval takes is an upper bound."""
     one = PAPER.replace(wall_thickness=ratio * PAPER.dome.inner_radius)
     least, softer = buckles_at(one), buckles_at(one.replace(shear_modulus=0.5 * one.wall.shear_modulus))
     assert softer == pytest.approx(0.5 * least, rel=2e-3)
-    thicker = buckles_at(one.replace(wall_thickness=1.1 * one.dome.wall_thickness))
-    assert 1.9 < math.log(thicker / least) / math.log(1.1) < BUCKLING_SLOPE
+    thicker = buckles_at(one.replace(wall_thickness=1.04 * one.dome.wall_thickness))
+    assert 0.0 < math.log(thicker / least) / math.log(1.04) < BUCKLING_SLOPE
+    if ratio < 0.2:
+        assert 1.8 < math.log(thicker / least) / math.log(1.04) < 2.4
+
+
+@pytest.mark.parametrize("pressures", [[-3.0], [-14.0], [-2.0, 0.0]])
+def test_without_waves_no_buckling_is_stated(pressures):
+    changes = {"pneumatics.driving_pressures_kPa": pressures, "indentation.checked_waves": 0}
+    assert evaluate("paper-dome", changes).prediction.limits.vacuum is None
+
+
+def test_a_vacuum_by_its_gas_or_of_a_thick_wall_is_rated_and_none_below_absolute_vacuum():
+    by_gas = evaluate(
+        "paper-dome", {"pneumatics.injected_volumes_mL": [-0.45], "pneumatics.driving_pressures_kPa": [0.0]}
+    )
+    assert by_gas.rating.severity(by_gas.prediction.filled[0].driving_pressure) == "warning"
+    (thick,) = ratings_of("paper-dome", 3.0, -61.0)
+    assert thick.severity(-0.061) == "warning"
+    (stiff,) = ratings_of("stiff-dome", 2.0, -40.0)
+    assert stiff.least == -math.inf or stiff.least > -0.1014
+
+
+def ratings_of(name, wall, pressure):
+    changes = {"membrane.wall_thickness_mm": wall, "pneumatics.driving_pressures_kPa": [pressure, 0.0]}
+    yield evaluate(name, changes).rating
+
+
+def test_the_interval_of_buckling_is_that_of_modulus_and_wall():
+    """The sources of the limit pressure, with the slope by the wall ratio that buckling has at most."""
+    evaluation = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [-5.0, 0.0]})
+    vacuum, limit = evaluation.rating.vacuum, evaluation.rating.limit
+    by_limit = math.log(limit.nominal / limit.low)
+    assert by_limit < math.log(vacuum.nominal / vacuum.high) < 1.1 * by_limit
 
 
 def test_a_vacuum_is_rated_below_the_weaker_end_of_buckling():

@@ -257,7 +257,7 @@ def _apart(group: CorrelatedParameters) -> str:
     )
     wider = float(np.max(group.alone / group.given))
     return (
-        f"{names}: strongly correlated parameters (correlation {group.correlation:+.3f}, intervals {_times(wider)} as "
+        f"{names}: strongly correlated by the data alone ({group.correlation:+.3f}, intervals {_times(wider)} as "
         f"wide as with the other{'s'[: len(group.members) > 2]} known){product}"
     )
 

@@ -109,16 +109,22 @@ def _held(sensor: Sensor, solid: SolidModel, free: FreeState, rest: FreeState) -
 
 
 def emptied_to(sensor: Sensor, solid: SolidModel, pressure: float) -> Inflation:
-    """The dome emptied to a pressure (MPa) below ambient, and on to where it buckles, if the sensor's test looks for
-    waves around the axis. Raises UnreachableLoadError where it buckles before."""
+    """The dome emptied to a pressure (MPa) below ambient, and on to its ``limit``, where it buckles, if the sensor's
+    test looks for waves around the axis. Raises UnreachableLoadError where it buckles before."""
     round_at, to = partial(_is_round, sensor, solid), -np.inf if sensor.protocol.waves else pressure
     # Past its buckling the round dome is no longer followed: the solver may find no equilibrium there.
     run = inflate(solid, to_pressure=to, enough=lambda state: not round_at(state))
     run = while_sound(solid, run, round_at, BUCKLED)
-    last = run.states[-1].pressure
-    if last > pressure:
-        raise UnreachableLoadError(pressure, last, BUCKLED)
-    return run
+    last = run.states[-1]
+    if last.pressure > pressure:
+        raise UnreachableLoadError(pressure, last.pressure, BUCKLED)
+    return replace(run, limit=last) if run.why_no_limit == BUCKLED else run
+
+
+def buckling(sensor: Sensor, solid: SolidModel) -> float | None:
+    """Pressure (MPa) at which the emptied dome buckles; None: it does not above absolute vacuum, or is not tested."""
+    run = emptied_to(sensor, solid, 0.0) if sensor.protocol.waves else None
+    return None if run is None or run.limit is None else run.limit.pressure
 
 
 def _is_round(sensor: Sensor, solid: SolidModel, state: FreeState) -> bool:

@@ -28,13 +28,7 @@ from pneutouch.mechanics.sensor import Filling, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
-
-_ASSUMPTIONS = (
-    "thin neo-Hookean membrane, incompressible, C1 = mu/2; no bending stiffness: the wall's own stiffness is missing",
-    "constant curvature of the free part and one thickness everywhere (paper, eq. 3 and 11)",
-    "R0 is the inner radius; outer heights add the thinned wall",
-    "uniaxial elongation at break is set against the equibiaxial stretch",
-)
+from pneutouch.wording import data_of
 
 _NEAR_BASE = 0.98
 """Contact radius over R0 at which the contact reaches the base: beyond it no space is left for the free arc."""
@@ -66,7 +60,7 @@ class MembraneTheory(SensorModel):
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions of the theory."""
-        return _ASSUMPTIONS
+        return tuple(data_of(__file__)["assumptions"])
 
     def closed(self, closure: str) -> SensorModel:
         """The theory with another closure."""

@@ -117,8 +117,7 @@ def beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | No
     if not beyond:
         return []
     text = (
-        f"the wall is stretched up to the first invariant of tension to {max(tension):.2f} times the length, and its "
-        f"law was fitted up to {largest:g}"
+        f"some of the wall is stretched further than a strip of {largest:g} times its length, the end of its law's fit"
     )
     return [Event(LAW_RANGE, beyond[0], False, text)]
 
@@ -164,8 +163,7 @@ def solid_result(
     at = driving_pressures.tolist()
     states = tuple(press(sensor, probe, state_at(probe.solid, p, emptied if p < 0.0 else run), p) for p in at)
     curve = _inflation(probe.solid, replace(run, states=[*emptied.states[:0:-1], *run.states]))
-    buckled = emptied.states[-1].pressure if emptied.why_no_limit else None
-    limits = replace(_limits(sensor, probe, run), vacuum=buckled)
+    limits = replace(_limits(sensor, probe, run), vacuum=None if emptied.limit is None else emptied.limit.pressure)
     return ModelResult(_limit_point(sensor, run), limits, curve, states)
 
 

@@ -224,22 +224,17 @@ def check_glue(view: PrintView) -> list[Finding]:
 def check_inserts(view: PrintView) -> list[Finding]:
     """Findings on heat-set inserts of seat and mount in a connector that does not melt."""
     context = view.sensor
-    if context is None or context.scene is None or context.calibrated:
-        return []
-    scene = context.scene
-    if surface_of(scene.connector_printer) == "thermoplastic":
+    scene = None if context is None or context.calibrated else context.scene
+    if scene is None or surface_of(scene.connector_printer) == "thermoplastic":
         return []
     text = f"{scene.connector_material.title} does not melt: a heat-set insert finds no hold in it"
-    found = []
-    for key, name in (("seat", scene.design.connector.seat), ("mount", scene.design.connector.mount)):
-        if getattr(getattr(scene, key), "insert", None) is not None:
-            fix = (
-                f"take a connector.{key} with tapped holes (inserts can be glued into them), or a connector of filament"
-            )
-            found.append(
-                Finding("inserts", "error", "connector", f"{name}: {text}", fix, _SOURCES["inserts"], None, None)
-            )
-    return found
+    fix = "take a connector.{} with tapped holes (inserts can be glued into them), or a connector of filament"
+    named = {key: getattr(scene.design.connector, key) for key in ("seat", "mount")}
+    source, with_inserts = _SOURCES["inserts"], [key for key in named if getattr(getattr(scene, key), "insert", None)]
+    return [
+        Finding("inserts", "error", "connector", f"{named[key]}: {text}", fix.format(key), source, None, None)
+        for key in with_inserts
+    ]
 
 
 _SQUEEZE, _FILL, _STRETCH = (0.15, 0.30), 0.85, 0.05
@@ -278,26 +273,20 @@ def check_gland(view: PrintView) -> list[Finding]:
     if context is None or context.scene is None or context.calibrated or not isinstance(context.scene.port, ORingStub):
         return []
     made = gland(context.scene.port, context.scene.connector_printer.accuracy_mm.nominal)
-    low, high = _SQUEEZE
-    spread = (
-        f"is squeezed by {made.squeeze:.0%}, {made.least:.0%} to {made.most:.0%} by the tolerances of print and ring"
-    )
-    checks = (
-        (made.least < low, spread, Excess(100 * made.least, 100 * low, "%")),
-        (made.most > high, spread, Excess(100 * made.most, 100 * high, "%")),
-        (made.fill > _FILL, f"fills {made.fill:.0%} of its groove", Excess(100 * made.fill, 100 * _FILL, "%")),
-        (
-            not 0.0 <= made.stretch <= _STRETCH,
-            f"is stretched by {made.stretch:.1%}",
-            Excess(100 * made.stretch, 5.0, "%"),
-        ),
+    ranges = (
+        ("is squeezed by", (made.least, made.most), _SQUEEZE),
+        ("fills of its groove", (made.fill, made.fill), (0.0, _FILL)),
+        ("is stretched by", (made.stretch, made.stretch), (0.0, _STRETCH)),
     )
     fix = "turn the groove to size after printing, or take another connector.port or print.connector_profile"
-    return [
-        Finding("gland", "warning", "connector", f"the O-ring {text}", fix, _SOURCES["gland"], None, by)
-        for wrong, text, by in checks
-        if wrong
-    ]
+    found = []
+    for words, ends, bounds in ranges:
+        for sign, end, bound in zip((-1.0, 1.0), ends, bounds, strict=True):
+            if sign * (end - bound) > 0.0:
+                text = f"the O-ring {words} {end:.1%} with the tolerances of print and ring, {bound:.0%} is the bound"
+                by = Excess(100 * end, 100 * bound, "%")
+                found.append(Finding("gland", "warning", "connector", text, fix, _SOURCES["gland"], None, by))
+    return found
 
 
 _TOUCH = 0.05

@@ -87,7 +87,7 @@ export class Candidates {
   card(card, index) {
     const title = card.rank === null ? card.title : `${card.rank}  ${card.title}`;
     const row = ([what, value, more]) => element("div", {}, element("dt", {}, what), element("dd", {}, value, more ? element("small", {}, ` ${more}`) : null));
-    const judged = card.passes ? "Passes check, the prediction by the solid included." : "The solid judges it when it is used.";
+    const judged = card.passes ? "Passes check, the prediction by the solid included." : "`check` judges it when it is used.";
     return element(
       "li",
       { class: `card candidate ${card.kind}`, id: `candidate-${index}`, onclick: () => this.choose(index, false), onfocusin: () => this.choose(index, false) },

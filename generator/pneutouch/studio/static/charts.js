@@ -219,14 +219,22 @@ export function drawInflation(answer) {
     if (pressure > highest) rising.push(k);
     highest = Math.max(highest, pressure);
   });
-  const pick = (name) => rising.map((k) => inflation[name][k]);
+  const pick = (name, at = rising) => at.map((k) => inflation[name][k]);
+  // Beyond the limit point the pressure falls: from its end back to the limit it is a line of its own.
+  const falling = inflation.driving_pressure_kPa.map((_, k) => k).slice(rising.at(-1) + 1).reverse();
   const marks = [{ at: rating.rated_pressure_kPa, words: `rated ${rated(rating)} kPa`, colour: "warning" }];
   if (limits.limit_point_kPa !== null) {
     marks.push({ at: limits.limit_point_kPa, words: `limit point ${short(limits.limit_point_kPa, 3)} kPa`, colour: "error" });
   }
   const lines = [series("apex, outer surface", tone(0)), series("apex, inner surface", tone(1), { dash: dashes(1) })];
-  const data = [pick("driving_pressure_kPa"), pick("apex_height_outer_mm"), pick("apex_height_inner_mm")];
-  show("inflation", "driving pressure, kPa", "apex height, mm", lines, data, { marks });
+  const tables = [[pick("driving_pressure_kPa"), pick("apex_height_outer_mm"), pick("apex_height_inner_mm")]];
+  if (falling.length && answer.prediction.filled?.length) {
+    lines.push(series("outer, beyond the limit", tone(0), { dash: [4, 4] }), series("by injected gas or height", colour("ink"), { width: 0 }));
+    tables.push([pick("driving_pressure_kPa", falling), pick("apex_height_outer_mm", falling)]);
+    const filled = [...answer.prediction.filled].sort((one, other) => one.driving_pressure_kPa - other.driving_pressure_kPa);
+    tables.push([filled.map((state) => state.driving_pressure_kPa), filled.map((state) => state.apex_height_outer_mm)]);
+  }
+  show("inflation", "driving pressure, kPa", "apex height, mm", lines, tables.length > 1 ? uPlot.join(tables) : tables[0], { marks });
 }
 
 export function resized() {

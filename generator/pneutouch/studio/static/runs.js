@@ -94,7 +94,7 @@ export class RunsTable {
   }
 
   /** Runs that came without a campaign file: what each is can be changed. */
-  showProposed({ runs, kinds }) {
+  showProposed({ runs, kinds = [] }) {
     this.inputs = runs.map((run) => this.inputsOf(run, kinds));
     const rows = this.inputs.map((one) =>
       row([element("label", {}, one.used, ` ${one.run.file}`), one.kind, one.sensor, one.driving_pressure_kPa, one.run_number, one.age_days, one.state]),

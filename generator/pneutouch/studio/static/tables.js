@@ -27,12 +27,13 @@ const sideways = ({ size_mm: [wide], diameter_mm: across }) => (wide > across + 
 
 export function showTiles(answer, solved) {
   const { prediction } = answer;
-  const state = prediction.states.at(-1);
+  const within = prediction.states.filter((one) => one.driving_pressure_kPa <= prediction.rating.rated_pressure_kPa);
+  const state = within.at(-1) ?? prediction.states[0];
   const membrane = solved?.jobs.flatMap((job) => job.items).find((item) => item.name === "membrane");
   const size = answer.drawing ?? solved?.drawing;
   const sensitivity = state.uncertainty?.figures?.sensitivity_kPa_per_N;
   byId("tiles").replaceChildren(
-    tile(`Sensitivity at ${short(state.driving_pressure_kPa)} kPa`, short(state.sensitivity_kPa_per_N, 3), "kPa/N", [interval(sensitivity), drawn(prediction)].filter(Boolean).join("; ")),
+    tile(`Sensitivity at ${short(state.driving_pressure_kPa)} kPa`, short(state.sensitivity_kPa_per_N, 3), "kPa/N", [interval(sensitivity), drawn(prediction, state)].filter(Boolean).join("; ")),
     tile("Rated pressure", rated(prediction.rating), "kPa", `limit: ${prediction.rating.limit}`),
     tile("Limit point", short(prediction.limits.limit_point_kPa, 3), "kPa", prediction.limit_point ? `apex at ${short(prediction.limit_point.apex_height_outer_mm, 3)} mm outside` : ""),
     tile("Size", size ? short(size.diameter_mm, 3) : "–", "mm across", size ? `${short(size.size_mm[2], 3)} mm high${sideways(size)}` : ""),
@@ -40,9 +41,9 @@ export function showTiles(answer, solved) {
   );
 }
 
-/** The last state's sensitivity with the gas as drawn, beside that of a dead volume of zero. */
-function drawn(prediction) {
-  const state = prediction.as_drawn?.at(-1);
+/** A state's sensitivity with the gas as drawn, beside that of a dead volume of zero. */
+function drawn(prediction, { driving_pressure_kPa }) {
+  const state = prediction.as_drawn?.find((one) => one.driving_pressure_kPa === driving_pressure_kPa);
   return state ? `with the ${volume(prediction)} as drawn ${short(state.sensitivity_kPa_per_N, 3)}` : "";
 }
 
@@ -58,14 +59,14 @@ const COLUMNS = [
 
 export function showFigures(prediction) {
   const rows = prediction.states.map((state) => [
-    `${short(state.driving_pressure_kPa)} kPa`,
+    `${short(state.driving_pressure_kPa)} kPa${state.driving_pressure_kPa > prediction.rating.rated_pressure_kPa ? " *" : ""}`,
     ...COLUMNS.map(([key]) => figure(state, key)),
     short(state.r_squared, 3),
   ]);
   const events = prediction.states.flatMap((state) => state.events.map((event) => `${short(state.driving_pressure_kPa)} kPa: ${event.kind ?? event.event ?? ""} ${event.indentation_mm ? `at ${short(event.indentation_mm, 3)} mm` : ""}`));
   byId("figures").replaceChildren(
     table(["driving pressure", ...COLUMNS.map(([, words]) => words), "R²"], rows),
-    element("p", { class: "muted" }, `In parentheses: interval with coverage factor 2. ${prediction.error_estimate.summary?.join(" ") ?? ""}`),
+    element("p", { class: "muted" }, `In parentheses: interval with coverage factor 2. *: above the rated pressure. ${prediction.error_estimate.summary?.join(" ") ?? ""}`),
     events.length ? element("p", { class: "muted" }, `Events: ${events.join("; ")}`) : "",
     ...asDrawn(prediction),
     ...byFilling(prediction),
@@ -79,11 +80,11 @@ function byFilling(prediction) {
   const rows = prediction.filled.map((state) => [
     `${short(state.held.injected_volume_mL)} mL`,
     `${short(state.driving_pressure_kPa)}`,
-    [state.held.stable_regulated ? "regulator" : null, state.held.stable_sealed ? "syringe" : null].filter(Boolean).join(" or ") || "nothing",
-    ...columns.map(([key]) => short(state[key])),
+    `${[state.held.stable_regulated ? "regulator" : null, state.held.stable_sealed ? "syringe" : null].filter(Boolean).join(" or ") || "nothing"}${state.held.stable_regulated ? "" : ", beyond the limit point"}`,
+    ...columns.map(([key]) => figure(state, key)),
   ]);
   const head = ["injected, at ambient pressure", "pressure, kPa", "held by", ...columns.map(([, words]) => words)];
-  return [element("h3", {}, "By injected gas or height (no intervals are known)"), table(head, rows)];
+  return [element("h3", {}, "By injected gas or height"), table(head, rows)];
 }
 
 /** The figures with the gas as drawn, if the design states a dead volume of zero behind a tube. */

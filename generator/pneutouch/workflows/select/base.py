@@ -27,6 +27,7 @@ from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import Changes, parse_changes, validate
 from pneutouch.spec.target import Shelf, Target
+from pneutouch.wording import data_of
 
 USUAL = "TangoPlus+VeroClear"
 """Pair of resins for a grade if none is named: the paper's."""
@@ -92,12 +93,7 @@ def mix_resins(pair: ResinPair, ambient_pressure: float) -> tuple[tuple[Candidat
     return tuple(resins), out
 
 
-_SEARCHED = {
-    "membrane.inner_radius_mm": "given.inner_radius_mm (`inner_radius`)",
-    "membrane.wall_thickness_mm": "given.wall_thickness_mm (`wall`)",
-    "membrane.material": "given.materials (`material`) or given.mix (`mix`)",
-    "pneumatics.driving_pressures_kPa": "target.driving_pressure_kPa (`at`)",
-}
+_SEARCHED: dict[str, str] = data_of(__file__)
 """Fields of a design that the search finds, and the options that fix them instead."""
 
 _FINGER = "connector.finger_diameter_mm"
