@@ -5,6 +5,7 @@ import numpy as np
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.sensor import RigidBase
+from pneutouch.parts.connector import LIP
 from tests.refusals import refused
 
 OFF = {"contact.base": False}
@@ -25,10 +26,10 @@ def test_a_clamping_ring_is_part_of_the_base():
     base, layout = sensor_of(scene).dome.base, scene.layout
     assert sensor_of(assembly).dome.base is None
     assert base.ring == layout.ring_inner and base.ring_height == scene.scene.seat.ring_thickness
-    # the ring's cone, drawn by the parts, begins and ends where the base has it
+    # the ring's cone, drawn by the parts, lies on the base's above the lip and ends where that does
     cone = next(piece for piece in scene.solid("ring").meridian.pieces if piece.tag == "ring cone")
     ends = sorted([cone.start, cone.end])
-    assert np.allclose(ends, [(base.ring, 0.0), (base.ring + base.ring_height, base.ring_height)])
+    assert np.allclose(ends, [(base.ring + LIP, LIP), (base.ring + base.ring_height, base.ring_height)])
 
 
 def test_the_atlas_does_not_answer_without_it(library):
