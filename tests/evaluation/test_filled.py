@@ -8,6 +8,7 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.filled import driven_uncertainties
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
+from tests.evaluation.calibrated import AT, predicted
 
 PRESSURE, APEX = "driving_pressure_kPa", "apex_height_outer_mm"
 INJECTED, HEIGHTS = "pneumatics.injected_volumes_mL", "pneumatics.apex_heights_mm"
@@ -73,3 +74,19 @@ def test_a_vacuum_and_a_wall_outside_the_tables_have_intervals():
         figure = record.known[SENSITIVITY_KEY]
         assert figure.low < figure.value < figure.high
     assert vacuum[0].known["limit_pressure_kPa"] == vacuum[1].known["limit_pressure_kPa"]
+
+
+def test_a_calibrated_sensor_and_an_unknown_contact_keep_their_sources(place):
+    """The vented dome of a calibrated sensor: the interval of 0 kPa, a quarter as wide; contact anywhere: wider."""
+    calibrated = predicted(place, {**AT, INJECTED: [0.0]})
+    drawn = evaluate("paper-dome", {INJECTED: [0.0]})
+    anywhere = evaluate("paper-dome", {INJECTED: [0.0], "contact.anywhere": True})
+    for evaluation in (calibrated, drawn, anywhere):
+        (filled,), usual = known(evaluation), evaluation.uncertainty[0].known
+        assert filled[SENSITIVITY_KEY].high == pytest.approx(usual[SENSITIVITY_KEY].high, rel=5e-3)
+
+    def width(evaluation):
+        figure = known(evaluation)[0][SENSITIVITY_KEY]
+        return np.log(figure.high / figure.low)
+
+    assert width(calibrated) < width(drawn) < 0.9 * width(anywhere)
