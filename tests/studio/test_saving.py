@@ -214,7 +214,7 @@ def test_new_changes_a_design_as_it_copies_it(command, tmp_path):
     assert command("new", "mine", "--from", "paper-dome", "--set", "membrane.wall_thickness_mm=2").returncode == 0
     assert "wall_thickness_mm = 2" in (tmp_path / "designs/mine.toml").read_text()
     for words, says in (
-        (["other", "--set", "membrane.wall_thickness_mm=2"], "no design to change; give one with --from"),
+        (["other", "--set", "membrane.wall_thickness_mm=99"], "must be from 0.05 to 50"),
         (["--from", "paper-dome", "--set", "membrane.wall_thickness_mm=2"], "paper-dome is the name of the original"),
         (["other", "--from", "paper-dome", "--set", "membrane.wall_thickness_mm=99"], "must be from 0.05 to 50"),
         (["other", "--from", "fingertip", "--set", "membrane.wall_thickness_mm=2"], "no such design"),

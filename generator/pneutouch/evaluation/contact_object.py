@@ -12,11 +12,12 @@ import numpy as np
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.sensor import RigidBase
+from pneutouch.mechanics.sensor import Filling, RigidBase
 from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, MOST_CELLS, object_cells
 from pneutouch.mechanics.solid.object_contact import RIM, first_contact, flat_radius
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.part import ClampedFlange
+from pneutouch.units import ML
 from pneutouch.wording import data_of
 
 if TYPE_CHECKING:
@@ -197,3 +198,10 @@ def contact_notes(sensor: Sensor, contact: "ContactModel | None") -> tuple[str, 
     if friction is not None and not np.isfinite(friction.standard).any(axis=0).all():
         notes.append(words["no_equilibrium"])
     return tuple(notes)
+
+
+def fillings_of(scene: ResolvedDesign) -> list[Filling]:
+    """The fillings of a scene that give states in addition to its driving pressures: injected gas, then heights."""
+    pneumatics = scene.design.pneumatics
+    injected = [Filling("injected", v * ML) for v in pneumatics.injected_volumes_mL or ()]
+    return [*injected, *(Filling("apex", h) for h in pneumatics.apex_heights_mm or ())]

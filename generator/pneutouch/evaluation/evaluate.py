@@ -14,16 +14,22 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import Resins, compared
 from pneutouch.errors import BeyondLimitError, InputError, StatedPressureError, nearest
-from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
+from pneutouch.evaluation.contact_object import (
+    check_first_touch,
+    check_object,
+    check_plate,
+    contact_object,
+    fillings_of,
+    rigid_base,
+)
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.sensor import Filling
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.read import Changes
-from pneutouch.units import KPA, ML
+from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
@@ -130,7 +136,7 @@ class Evaluation:
             return ()
         from pneutouch.evaluation.filled import filled_uncertainties
 
-        return filled_uncertainties(self)
+        return filled_uncertainties(self.prediction, self.sensor, self.scene, list(self.resins.values()))
 
     @cached_property
     def as_drawn(self) -> SensorPrediction | None:
@@ -282,13 +288,6 @@ def evaluate_drawn(
     if more:
         prediction = replace(prediction, assumptions=(*prediction.assumptions, *more))
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
-
-
-def fillings_of(scene: ResolvedDesign) -> list[Filling]:
-    """The fillings of a scene that give states in addition to its driving pressures: injected gas, then heights."""
-    pneumatics = scene.design.pneumatics
-    injected = [Filling("injected", v * ML) for v in pneumatics.injected_volumes_mL or ()]
-    return [*injected, *(Filling("apex", h) for h in pneumatics.apex_heights_mm or ())]
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:

@@ -12,18 +12,17 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import PneutouchError
-from pneutouch.evaluation.evaluate import Evaluation, fillings_of
+from pneutouch.evaluation.contact_object import fillings_of
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.evaluation.uncertainty import DIGITS, NOTHING, TREND, values_of
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, moved, unit_step
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected.figures import state_logs
-from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
+from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, TREND
 from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.mechanics.models.solid import MODEL, solid_result
 from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Filling, Sensor
-from pneutouch.mechanics.uncertainty.document import document, text
+from pneutouch.mechanics.uncertainty.document import DIGITS, NOTHING, document, text, values_of
 from pneutouch.mechanics.uncertainty.propagate import LIMIT, STEP, Budget, by_input, combined, from_changes
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
@@ -44,9 +43,10 @@ _EXACT = "the filling counts as exact; a syringe adds its own scale to it"
 _BY_SOLID = "the derivatives are the solid's, over the spread of each input"
 
 
-def filled_uncertainties(evaluation: Evaluation) -> tuple[UncertaintyRecord, ...]:
+def filled_uncertainties(
+    prediction: SensorPrediction, sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material]
+) -> tuple[UncertaintyRecord, ...]:
     """One record for each state given by its filling, its pressure among the figures; or the reason for none."""
-    prediction, sensor, scene = evaluation.prediction, evaluation.sensor, evaluation.scene
     states, fillings = prediction.filled, fillings_of(scene)
     why = TREND if prediction.model == "membrane" else sensor.protocol.other_contact
     if why is not None:
@@ -57,7 +57,7 @@ def filled_uncertainties(evaluation: Evaluation) -> tuple[UncertaintyRecord, ...
     def again(other: Sensor, factor: float) -> Array:
         return here if factor != 1.0 else np.hstack([_found(_filled, other, filling) for filling in fillings])
 
-    budget = _budget(sensor, scene, list(evaluation.resins.values()), at, here, again)
+    budget = _budget(sensor, scene, materials, at, here, again)
     known = [{**values_of(prediction, state), _LIMIT_KEY: state.driving_pressure / KPA} for state in states]
     return tuple(_records(budget, known, _EXACT, scene, PRESSURE_KEY))
 

@@ -16,7 +16,7 @@ from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
 from pneutouch.evaluation.relaxation import viscous
-from pneutouch.evaluation.sheet_data import AgeingData, ComparedMembrane, PressedView, SheetData, force_at
+from pneutouch.evaluation.sheet_data import AgeingData, ComparedMembrane, PressedView, SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import Sensor, SensorPrediction
@@ -45,7 +45,7 @@ def pressed_view(prediction: SensorPrediction) -> PressedView | None:
     pressure[-1] = pressure[-1].mean()
     sheared = None if state.beyond_axis is None else state.beyond_axis.shear
     moved = face.travel != 0.0 and sheared is not None
-    force = sheared.force[-1] if moved and sheared else force_at(state, face.indentation)
+    force = sheared.force[-1] if moved and sheared else SheetData.force_at(state, face.indentation)
     return PressedView(
         driving_pressure_kPa=state.driving_pressure / KPA,
         indentation=face.indentation,

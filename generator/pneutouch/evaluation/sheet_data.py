@@ -101,6 +101,14 @@ class SheetData:
     curves: tuple[CurveOutcome, ...] = ()
     as_drawn: SensorPrediction | None = None
 
+    @staticmethod
+    def force_at(state: SensorState, indentation: float) -> float:
+        """Contact force (N) at an indentation, mm: linear between the steps, and on to the end of the range."""
+        travel, force = state.indentation.tolist(), state.force.tolist()
+        if state.figures is not None and state.range_end > travel[-1]:
+            travel, force = [*travel, state.range_end], [*force, state.figures.force_range[1]]
+        return float(np.interp(indentation, travel, force))
+
 
 class SensitivityCurve(NamedTuple):
     """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and its label."""
@@ -255,11 +263,3 @@ class PressedView:
     normals: Array
     pressure_kPa: Array
     lines: tuple[Array, ...]
-
-
-def force_at(state: SensorState, indentation: float) -> float:
-    """Contact force (N) at an indentation, mm: linear between the steps, and on to the end of the range."""
-    travel, force = state.indentation.tolist(), state.force.tolist()
-    if state.figures is not None and state.range_end > travel[-1]:
-        travel, force = [*travel, state.range_end], [*force, state.figures.force_range[1]]
-    return float(np.interp(indentation, travel, force))

@@ -20,14 +20,13 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, NUMERICAL
+from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, TREND
 from pneutouch.mechanics.models.choice import stated_error
-from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.units import KPA
 from pneutouch.wording import data_of, rounded
 
 if TYPE_CHECKING:
@@ -51,14 +50,6 @@ def notes_on(sensor: Sensor) -> tuple[str, ...]:
 
 
 _VACUUM = "the derivatives are the atlas's, which has no states below ambient pressure"
-
-DIGITS = 6
-"""Significant digits of an uncertainty: more than are meaningful, fewer than differ between processors."""
-
-NOTHING = 1e-9
-"""Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
-
-TREND = _WORDS["membrane"].format(off=1 + NUMERICAL["membrane"])
 
 
 @dataclass(frozen=True)
@@ -204,7 +195,7 @@ def _of_blown(
     if unknown(sensor, model) is not None:
         notes_of_wall += (_WORDS["soft"].format(sensor.gas.ambient_pressure / sensor.wall.shear_modulus),)
     from pneutouch.mechanics.atlas.figures import FIGURES
-    from pneutouch.mechanics.uncertainty.document import document, gas_text, text
+    from pneutouch.mechanics.uncertainty.document import DIGITS, NOTHING, document, gas_text, text, values_of
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
     calibrated = scene.calibration is not None
@@ -245,23 +236,6 @@ def _of_blown(
         )
         content.append(rounded(entry, DIGITS, NOTHING))
     return tuple(content)
-
-
-def values_of(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
-    """Values of the budget's figures by key, as the model gives them; figures that it does not give are left out."""
-    peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
-    if figures is not None:
-        of_contact = {
-            SENSITIVITY_KEY: figures.sensitivity,
-            STIFFNESS_KEY: figures.stiffness,
-            "force_at_range_end_N": figures.force_range[1],
-        }
-    return {
-        **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
-        **of_contact,
-        "range_end_mm": state.range_end,
-        "apex_height_outer_mm": state.apex_outer,
-    }
 
 
 def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[str, FigureRecord]) -> SampleRecord:

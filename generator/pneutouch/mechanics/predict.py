@@ -17,7 +17,7 @@ from pneutouch.mechanics.models.choice import (
     usual_model,
 )
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel
-from pneutouch.mechanics.prediction import SensorPrediction, SensorState
+from pneutouch.mechanics.prediction import Limits, SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Filling, IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
 from pneutouch.wording import data_of
@@ -66,16 +66,7 @@ def predict(
     held = _WORDS["flange" if chosen.holds_flange and sensor.dome.flange is not None else "base"]
     dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA
     gas = f"dead volume {dead / ML:.4g} mL, ambient pressure {ambient_kPa:g} kPa"
-    filled: tuple[SensorState, ...] | None = ()
-    if fillings:
-        filled = chosen.closed(closure).filled(sensor, fillings)
-        filled = model_named(usual_model(sensor)).filled(sensor, fillings) if filled is None else filled
-    limits = result.limits
-    if limits.vacuum is None and any(state.driving_pressure < 0.0 for state in filled or ()):
-        from pneutouch.mechanics.models.filling import buckling
-        from pneutouch.mechanics.models.solid import solid_probe
-
-        limits = replace(limits, vacuum=buckling(sensor, solid_probe(sensor).solid))
+    filled, limits = _filled(chosen.closed(closure), sensor, fillings, result.limits)
     return SensorPrediction(
         design=design,
         model=chosen.name,
@@ -86,9 +77,25 @@ def predict(
         dead_volume=dead,
         inflation=result.inflation,
         states=tuple(state.corrected(correction).judged() for state in result.states),
-        filled=tuple(state.corrected(correction).judged() for state in filled or ()),
+        filled=tuple(state.corrected(correction).judged() for state in filled),
         assumptions=(*chosen.assumptions(sensor), held, contact_words(sensor.protocol), *_WORDS["always"], gas),
     )
+
+
+def _filled(
+    chosen: SensorModel, sensor: Sensor, fillings: Sequence[Filling], limits: Limits
+) -> tuple[tuple[SensorState, ...], Limits]:
+    """States given by their fillings, and the limits with that of a vacuum if one of them is below ambient pressure."""
+    if not fillings:
+        return (), limits
+    states = chosen.filled(sensor, fillings)
+    states = model_named(usual_model(sensor)).filled(sensor, fillings) if states is None else states
+    if limits.vacuum is None and any(state.driving_pressure < 0.0 for state in states or ()):
+        from pneutouch.mechanics.models.filling import buckling
+        from pneutouch.mechanics.models.solid import solid_probe
+
+        limits = replace(limits, vacuum=buckling(sensor, solid_probe(sensor).solid))
+    return states or (), limits
 
 
 def contact_words(protocol: IndentationProtocol) -> str:

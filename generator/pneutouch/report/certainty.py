@@ -8,18 +8,12 @@ from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.report.blocks import Columns, Items, Plot, SheetBlock, SheetTable, Text, section
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
-from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.uncertainty import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
+from pneutouch.wording import data_of
 
-_FIGURES = {
-    SENSITIVITY_KEY: ("Sensitivity", "kPa/N"),
-    "limit_pressure_kPa": ("Limit pressure", "kPa"),
-    STIFFNESS_KEY: ("Stiffness", "N/mm"),
-    "force_at_range_end_N": ("Force at the range's end", "N"),
-    "range_end_mm": ("Range ends at", "mm"),
-    "apex_height_outer_mm": ("Apex height, outside", "mm"),
-}
+_FIGURES: dict[str, tuple[str, str]] = data_of(__file__)
 
 _ONLY_MODEL = "the contact is not symmetric about the axis, which the other models take it to be"
 

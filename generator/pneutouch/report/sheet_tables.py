@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from pneutouch.arrays import grouped
-from pneutouch.evaluation.sheet_data import SheetData, force_at
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
 from pneutouch.report.blocks import SheetBlock, SheetTable, Tile, section
@@ -65,7 +65,7 @@ def quiet_events(sheet: SheetData) -> list[str]:
     for state in sheet.prediction.states:
         for event in state.events:
             if not event.ends_range and event not in state.warned and event.indentation <= state.range_end:
-                force = force_at(state, event.indentation)
+                force = sheet.force_at(state, event.indentation)
                 place = f"{event.indentation:.2f} mm and {force:.1f} N at {state.driving_pressure / KPA:g} kPa"
                 seen.setdefault((event.kind, event.message), []).append(place)
     return [f"Within the range, {kind} from {', '.join(at)}: {words}." for (kind, words), at in seen.items()]

@@ -250,15 +250,12 @@ def _open(fit: CalibrationFit, identified: Identifiability) -> list[str]:
 
 def _apart(group: CorrelatedParameters) -> str:
     names = enumerated([WORDS[k] for k in group.members])
-    product = (
-        f"; the data determine modulus × wall^{group.combination:.2f}"
-        if group.combination is not None and group.combination > 0
-        else ""
-    )
+    power = group.combination or 0.0
+    product = f"; the data determine modulus × wall^{power:.2f}" if power > 0 else ""
     wider = float(np.max(group.alone / group.given))
     return (
-        f"{names}: strongly correlated by the data alone ({group.correlation:+.3f}, intervals {_times(wider)} as "
-        f"wide as with the other{'s'[: len(group.members) > 2]} known){product}"
+        f"{names}: strongly correlated parameters (by the data alone {group.correlation:+.3f}, intervals "
+        f"{_times(wider)} as wide as with the other{'s'[: len(group.members) > 2]} known){product}"
     )
 
 

@@ -1,5 +1,7 @@
 """Numerical errors of the models (docs/background/accuracy.md), and assumptions of the finite elements."""
 
+from typing import Any
+
 from pneutouch.mechanics.sensor import IndentationProtocol, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.wording import data_of
@@ -20,24 +22,22 @@ TABULATION = 0.0075
 """Greatest relative error of the atlas's sensitivity against the solid where `auto` uses the atlas: not near buckling
 or tearing, and not for ranges below 0.2 R0 (docs/background/atlas.md); checked by `make check-slow`."""
 
-_MEMBRANE = 17.0
-"""Greatest relative error of the membrane's sensitivity against the solid; the membrane has no bending stiffness."""
-
 NUMERICAL = {
-    "membrane": _MEMBRANE,
+    "membrane": 17.0,
     "atlas": SENSITIVITY_DISCRETISATION + TABULATION,
     "solid": SENSITIVITY_DISCRETISATION,
     "harmonic": OBJECT_DISCRETISATION,
 }
-"""Relative numerical error in sensitivity of each model: its distance from the exact solution of its own equations, or
-for the membrane from the solid's. Effects that the equations leave out are additional, for every model."""
-
+"""Relative numerical error in sensitivity of each model: its distance from the exact solution of its own equations, or,
+for the membrane, which has no bending stiffness, from the solid's. Effects that they leave out are additional."""
 
 BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
 NOT_CHECKED = "sway and lobes of the dome around its axis are not looked for"
 
-_SURFACES = "R0 is the inner radius; heights are those of the inner and the outer surface"
-_WORDS = data_of(__file__)
+_WORDS: dict[str, Any] = data_of(__file__)
+
+TREND: str = _WORDS["trend"].format(off=1 + NUMERICAL["membrane"])
+"""Why no interval is given of the membrane's figures."""
 
 
 def discretised(
@@ -60,7 +60,7 @@ def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
     largest = sensor.wall.largest_stretch
     fitted = "" if largest is None else f", fitted to tension up to a stretch of {largest:g}"
     law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"
-    lines = (law, body, _SURFACES)
+    lines = (law, body, _WORDS["surfaces"])
     if sensor.dome.base is None:
         return (*lines, *_WORDS["through_base"], _edge(sensor.protocol), _WORDS["break"])
     return (*lines, _edge(sensor.protocol), _WORDS["break"], _WORDS["on_base"])

@@ -8,13 +8,9 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.models.interface import SensorModel
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.spec.values import plain_number
+from pneutouch.wording import data_of
 
-MODELS = {
-    "membrane": "pneutouch.mechanics.models.membrane",
-    "atlas": "pneutouch.mechanics.models.atlas",
-    "solid": "pneutouch.mechanics.models.solid",
-    "harmonic": "pneutouch.mechanics.models.harmonic",
-}
+MODELS: dict[str, str] = data_of(__file__)
 """Modules of the models by name, cheapest first. Each holds its model as ``MODEL`` and is imported on first use."""
 
 MODEL_CHOICES = (*MODELS, "auto")

@@ -116,9 +116,7 @@ def beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | No
     beyond = [at for at, stretch in zip(travel, tension, strict=True) if stretch > largest]
     if not beyond:
         return []
-    text = (
-        f"some of the wall is stretched further than a strip of {largest:g} times its length, the end of its law's fit"
-    )
+    text = f"some of the wall is stretched more than the tested strips: its law was fitted up to {largest:g}"
     return [Event(LAW_RANGE, beyond[0], False, text)]
 
 

@@ -14,11 +14,13 @@ from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY, log_
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.line.elements import ADIABATIC, REFERENCE_TEMPERATURE
+from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE, FRICTION, JOINT, PLACE, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -214,6 +216,30 @@ _UNCOUNTED = (
     "not in the budget, because no number is known: the model's error in figures other than the sensitivity, creep and "
     "temperature of the resin, {place}{friction}the scatter of the break strain"
 )
+
+
+DIGITS = 6
+"""Significant digits of an uncertainty: more than are meaningful, fewer than differ between processors."""
+
+NOTHING = 1e-9
+"""Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
+
+
+def values_of(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
+    """Values of the budget's figures by key, as the model gives them; figures that it does not give are left out."""
+    peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
+    if figures is not None:
+        of_contact = {
+            SENSITIVITY_KEY: figures.sensitivity,
+            STIFFNESS_KEY: figures.stiffness,
+            "force_at_range_end_N": figures.force_range[1],
+        }
+    return {
+        **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
+        **of_contact,
+        "range_end_mm": state.range_end,
+        "apex_height_outer_mm": state.apex_outer,
+    }
 
 
 def document(

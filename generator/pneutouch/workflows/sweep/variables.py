@@ -10,11 +10,12 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, spread, why_unknown
+from pneutouch.evaluation.uncertainty import SensorSpread, spread, why_unknown
 from pneutouch.mechanics import SensorState
 from pneutouch.mechanics.atlas.coverage import under_plate
 from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
+from pneutouch.mechanics.uncertainty.document import DIGITS
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
 from pneutouch.results.record import SENSITIVITY_KEY
