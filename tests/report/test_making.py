@@ -69,7 +69,7 @@ def test_a_printed_dome_has_nothing_to_pour():
 )
 def test_the_glue_is_that_of_the_pair_of_materials(name, changes, glue):
     _, lines = steps(name, changes)
-    assert f"fill the gap with {glue};" in " ".join(lines)
+    assert f"Lay a bead of {glue} around the spigot" in " ".join(lines)
 
 
 SOFT = """title = "Own elastomer"
