@@ -1,9 +1,10 @@
-"""Shapes that the program does not ship: a hemisphere under another name, a spherical cap and a thimble."""
+"""Shapes that the program does not ship: a hemisphere under another name, a cap and a thimble."""
 
 from __future__ import annotations
 
 import math
 
+from pneutouch.shape import SHAPES, shape_of
 from pneutouch.shape.dome import INNER_WALL, OUTER_WALL, DomeShape
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.shape.meridian import Arc, Line
@@ -42,19 +43,33 @@ class HalfHighCap(DomeShape):
         return self._arc(self.sphere + self.wall_thickness, OUTER_WALL)
 
 
-class Thimble(DomeShape):
-    """A half ball on a cylinder as high as it is wide: faces of two pieces."""
+class LongThimble(DomeShape):
+    """A half ball on a cylinder as high as it is wide: faces of two pieces, without sizes of its own."""
 
-    key, adjective = "thimble", "thimble-shaped"
-
-    def _face(self, radius, tag):
-        high = 2.0 * self.inner_radius
-        return Line((radius, 0.0), (radius, high), tag), Arc((0.0, high), radius, 0.0, 0.5 * math.pi, tag)
+    key, adjective = "long-thimble", "thimble-shaped"
 
     @property
     def inner(self):
-        return self._face(self.inner_radius, INNER_WALL)
+        return self._part(self.inner_radius, INNER_WALL)
 
     @property
     def outer(self):
-        return self._face(self.inner_radius + self.wall_thickness, OUTER_WALL)
+        return self._part(self.inner_radius + self.wall_thickness, OUTER_WALL)
+
+    def _part(self, radius, tag):
+        high = 2.0 * self.inner_radius
+        return Line((radius, 0.0), (radius, high), tag), Arc((0.0, high), radius, 0.0, 0.5 * math.pi, tag)
+
+
+SIZES = {
+    "profile": {"profile": [[9.25, 0.0], [9.25, 5.0, 1.0], [4.0, 7.0, 2.0], [0.0, 7.0]]},
+    "cap": {"rise": 4.0},
+    "disc": {"boss_radius": 2.0, "boss_height": 1.5},
+}
+"""Sizes of the shipped shapes that have no usual ones, or are not plain with them."""
+
+
+def shipped(inner_radius, wall_thickness):
+    """Every shape of the program at one radius and wall, and a flat disc."""
+    size = inner_radius, wall_thickness
+    return [*(shape_of(key, *size, SIZES.get(key, {})) for key in SHAPES), shape_of("disc", *size, {})]

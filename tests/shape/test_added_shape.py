@@ -22,9 +22,9 @@ from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
 from pneutouch.spec.design import DesignFile, Membrane
 from pneutouch.spec.read import validate
 from pneutouch.workflows.build import build
-from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
+from tests.shape.shapes import HalfBall, HalfHighCap, LongThimble
 
-ADDED = (HalfBall, HalfHighCap, Thimble)
+ADDED = (HalfBall, HalfHighCap, LongThimble)
 SHAPE = "membrane.shape"
 
 
@@ -123,7 +123,7 @@ def test_the_usual_shape_is_left_out_of_dumps():
     assert Membrane(shape="half-ball").model_dump()["shape"] == "half-ball"
 
 
-@pytest.mark.parametrize("kind", [HalfHighCap, pytest.param(Thimble, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", [HalfHighCap, pytest.param(LongThimble, marks=pytest.mark.slow)])
 def test_other_shapes_are_drawn_solved_and_pressed(kind):
     """Gas, apexes and print mesh are those of the shape; a cell across the joint of two pieces costs 4e-6 of the gas."""
     evaluation = evaluate("paper-dome", {SHAPE: kind.key, "pneumatics.driving_pressures_kPa": [0.0]})
@@ -173,7 +173,7 @@ def test_a_calibration_of_one_shape_is_not_taken_for_another():
     assert "half-ball" in str(calibration.misfit("TangoPlus", 9.25, 1.5, "half-ball"))
 
 
-@pytest.mark.parametrize("kind", [HalfHighCap, Thimble])
+@pytest.mark.parametrize("kind", [HalfHighCap, LongThimble])
 def test_a_graded_wall_of_another_shape_has_its_moduli_from_pole_to_rim(kind):
     """The grade of the design along the arc of the shape, at the points at which the solid takes it."""
     source = renamed("graded-dome", "graded-cap", kind.key)

@@ -15,20 +15,19 @@ from pneutouch.mechanics.solid.flange import printed_dome
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome, nodes_along
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.shape import SHAPES
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere, no_hemisphere
 from pneutouch.shape.meridian import Line, Meridian
-from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
+from tests.shape.shapes import HalfBall, HalfHighCap, shipped
 
 SIZE = 9.25, 1.5
-EVERY = [*SHAPES.values(), HalfBall, HalfHighCap, Thimble]
-every = pytest.mark.parametrize("shape", [kind(*SIZE) for kind in EVERY], ids=lambda shape: shape.key)
+EVERY = [*shipped(*SIZE), HalfBall(*SIZE), HalfHighCap(*SIZE)]
+every = pytest.mark.parametrize("shape", EVERY, ids=lambda shape: shape.key)
 
 
 def wall_of(shape):
-    """The wall alone, closed at the base plane."""
-    foot = Line((shape.inner_radius, 0.0), (shape.outer_radius, 0.0), "base")
+    """The wall alone, closed where it is clamped."""
+    foot = Line(shape.inner[0].start, shape.outer[0].start, "base")
     return Meridian((*(piece.reverse() for piece in reversed(shape.inner)), foot, *shape.outer))
 
 
@@ -39,11 +38,14 @@ def off(face, points):
 @every
 def test_faces_lead_from_the_base_plane_to_the_axis_and_are_smooth(shape):
     for face, radius in ((shape.inner, shape.inner_radius), (shape.outer, shape.outer_radius)):
-        assert face[0].start == pytest.approx((radius, 0.0), abs=1e-12)
+        assert face[0].start[0] == pytest.approx(radius, abs=1e-12)
         assert face[-1].end[0] == pytest.approx(0.0, abs=1e-12)
         for one, other in pairwise(face):
             assert one.end == pytest.approx(other.start, abs=1e-12)
-            assert one.normals(np.ones(1))[0] == pytest.approx(other.normals(np.zeros(1))[0], abs=1e-12)
+            if not getattr(shape, "boss_height", 0.0):
+                assert one.normals(np.ones(1))[0] == pytest.approx(other.normals(np.zeros(1))[0], abs=1e-12)
+    assert shape.outer[0].start[1] == pytest.approx(0.0, abs=1e-12)
+    assert shape.floor <= shape.inner[0].start[1] <= 1e-12
     assert wall_of(shape).volume() > 0.0
 
 
@@ -53,10 +55,11 @@ def test_nodes_of_the_solid_lie_on_the_faces_of_the_meridian(shape, arc, through
     mesh = dome(shape, arc, through, order)
     for face, edges in ((shape.inner, mesh.inner), (shape.outer, mesh.outer)):
         assert off(face, mesh.nodes[np.unique(edges)]) < 1e-12
-    assert np.abs(mesh.nodes[mesh.clamped, 1]).max() < 1e-12 and mesh.nodes[mesh.axis, 0].max() == 0.0
+    edge = Line(shape.inner[0].start, shape.outer[0].start, "")
+    assert edge.distance(mesh.nodes[mesh.clamped]).max() < 1e-12 and mesh.nodes[mesh.axis, 0].max() == 0.0
 
 
-@every
+@pytest.mark.parametrize("shape", [one for one in EVERY if one.floor == 0.0], ids=lambda shape: shape.key)
 def test_the_wall_goes_on_as_the_flange_that_is_printed(shape):
     mesh = printed_dome(shape, 2.25, 2.25)
     assert off(shape.inner, mesh.nodes[nodes_along(mesh.inner)]) < 1e-12
@@ -69,14 +72,13 @@ def test_the_wall_goes_on_as_the_flange_that_is_printed(shape):
 def test_volume_by_pappus_is_that_of_print_mesh_and_solid(shape):
     """The print mesh keeps the area of every arc, so the volume converges faster than its chords; 1e-3 mm are given."""
     wall = wall_of(shape)
-    area = sum(piece.swept() for piece in shape.outer) - shape.cavity_volume
-    assert wall.volume() == pytest.approx(area, rel=1e-12)
+    assert wall.volume() == pytest.approx(shape.wall_volume, rel=1e-12)
     rings = sample(wall, 1e-3)
     chain = [(ring.radius, ring.height) for ring in rings]
     printed = sum(Line(a, b, "").swept() for a, b in zip(chain, [*chain[1:], chain[0]], strict=True))
     assert printed == pytest.approx(wall.volume(), rel=2e-4)
     mesh = dome(shape, 96, 1)
-    assert Cavity(mesh.inner).volume(mesh.nodes) == pytest.approx(shape.cavity_volume, rel=1e-7)
+    assert Cavity(mesh.inner, mesh.pocket).volume(mesh.nodes) == pytest.approx(shape.cavity_volume, rel=1e-6)
 
 
 @pytest.mark.parametrize("kind", [Hemisphere, HalfBall])
@@ -93,7 +95,7 @@ def test_a_cap_has_its_textbook_volume():
     assert shape.cavity_volume == pytest.approx(math.pi * shape.height / 6 * (3 * 9.25**2 + shape.height**2), rel=1e-12)
 
 
-@every
+@pytest.mark.parametrize("shape", [one for one in EVERY if one.floor == 0.0], ids=lambda shape: shape.key)
 @pytest.mark.parametrize("lean", [0.0, 0.3, 0.9])
 def test_the_leaning_point_has_that_normal(shape, lean):
     share = np.linspace(0.0, 1.0, 400_001)

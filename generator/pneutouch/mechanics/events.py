@@ -23,7 +23,7 @@ OVERHANG = 2.0e-2
 BASE_SHARE = 2.0e-2
 
 #: Kinds of events that a straight-line fit to the curve may not include: it ends before the first of them.
-BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
+BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor", "rim")
 
 PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
 
@@ -37,12 +37,13 @@ OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the 
 class SolidEvent:
     """An event at an indentation (mm).
 
-    Kinds that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold (a jump
-    at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid with a base
-    continues). Kinds that do not: base (the outer wall lies down next to its clamp), separation (the wall leaves the
-    plate inside the contact), crease, overhang (the wall hangs below its base plane where the solid has no base),
-    plate_rim and object_edge (the contact reaches where the object turns up), break (break strain), gauge_range, sway
-    and lobes (the axisymmetric path is unstable to one wave around the axis, or to several). ``detail``: in words.
+    Kinds that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold (a
+    jump at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the body behind it; a
+    solid with a base continues). Kinds that do not: rim (the object meets the flange or a ring beside the wall),
+    base (the outer wall lies down next to its clamp), separation (the wall leaves the plate inside the contact),
+    crease, overhang (the wall hangs below its base plane where the solid has no base), plate_rim and object_edge
+    (the contact reaches where the object turns up), break (break strain), gauge_range, sway and lobes (the
+    axisymmetric path is unstable to one wave around the axis, or to several). ``detail``: in words.
     """
 
     kind: str

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class RigidBase:
     """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
 
-    opening: radius of the hole in the plane inside the dome.  flange: outer radius of a flange that belongs to the
-    solid, within which the outer wall does not meet this base; 0 if the wall itself is clamped at z = 0.
+    opening: radius of the hole in the plane inside the dome, where it lies at the floor of the shape.  flange: radius
+    from which on the outer wall can meet the plane, outside a flange that belongs to the solid; 0: everywhere.
     ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
     """
 

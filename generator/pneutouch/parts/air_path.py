@@ -11,6 +11,7 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, plug_neck, plug_radius
+from pneutouch.shape.meridian import Line
 from pneutouch.spec.part import ClampedFlange, OnePiece
 
 UNKNOWN_END = 150.0
@@ -34,10 +35,10 @@ def channel_volume(layout: Layout) -> float:
     port, radius = layout.port, layout.channel_radius
     if layout.port_axis is None:
         meeting = layout.under - port.hollow[-1][1]
-        return port.hollow_volume(port.hollow[-1][1]) - math.pi * radius**2 * meeting
+        return port.hollow_volume(port.hollow[-1][1]) + math.pi * radius**2 * (layout.floor - meeting)
     if layout.opening_radius:
         return side_volume(layout, layout.opening_radius)
-    return side_volume(layout, radius) - math.pi * radius**2 * layout.channel_low
+    return side_volume(layout, radius) + math.pi * radius**2 * (layout.floor - layout.channel_low)
 
 
 def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
@@ -48,17 +49,21 @@ def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
     if isinstance(seat, OnePiece):
         bottom, body = layout.under + seat.shoulder_thickness, plug_radius(scene, layout)
         if layout.port_axis is None:
-            return annulus(body, layout.opening_radius, -bottom)
+            return annulus(body, layout.opening_radius, layout.floor - bottom)
         neck, step = plug_neck(scene, layout)
-        return annulus(body, layout.opening_radius, step - bottom) + annulus(neck, layout.opening_radius, -step)
+        beside = annulus(neck, layout.opening_radius, layout.floor - step)
+        return annulus(body, layout.opening_radius, step - bottom) + beside
     return 0.0
 
 
 def inside_flange(layout: Layout) -> float:
     """Volume in mm3 of the gap between spigot and flange, and inside a gasket, which begins where the flange does."""
-    upright = annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
+    inside = Line(
+        (layout.inner_radius + layout.flange_draft, -layout.flange_thickness), layout.shape.inner[0].start, ""
+    )
+    spigot = annulus(0.0, layout.groove_inner, layout.flange_thickness + layout.floor)
     gasket = annulus(layout.groove_inner, layout.inner_radius + layout.flange_draft, layout.gasket)
-    return upright + draft(layout.inner_radius, layout.flange_draft, layout) + gasket
+    return inside.swept() - spigot - layout.shape.pocket + gasket
 
 
 def draft(radius: float, draft: float, layout: Layout) -> float:
@@ -122,10 +127,10 @@ def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
 def _channel_length(layout: Layout) -> float:
     """Length of the channel from the base plane, or the wall of a plug's opening, to the port or its bore."""
     if layout.port_axis is None:
-        return layout.port.hollow[-1][1] - layout.under
+        return layout.port.hollow[-1][1] - layout.under + layout.floor
     if layout.opening_radius:
         return layout.port.hollow[-1][1] + layout.plate_radius - layout.opening_radius
-    return -layout.port_axis
+    return layout.floor - layout.port_axis
 
 
 def _port_pieces(layout: Layout) -> list[AirPiece]:

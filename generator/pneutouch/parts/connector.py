@@ -42,7 +42,7 @@ def connector_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     faces: TracedPath = [
         *underside(scene, layout),
         *_seat_faces(scene.seat, layout),
-        ("spigot top", (layout.channel_radius, 0.0)),
+        ("spigot top", (layout.channel_radius, layout.floor)),
     ]
     if layout.port_axis is not None:
         end = [(CHANNEL, (layout.channel_radius, layout.channel_low)), (CHANNEL, (0.0, layout.channel_low))]
@@ -61,7 +61,7 @@ def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
         [
             *underside(scene, layout),
             *_seat_faces(seat, layout),
-            ("lip top", (opening, 0.0)),
+            ("lip top", (opening, layout.floor)),
             ("opening", (opening, high)),
             ("counterbore", (wide, high)),
             ("counterbore", (wide, layout.under)),
@@ -78,19 +78,19 @@ def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
         ("plug underside", (wide, layout.under)),
         (PLUG_SHOULDER, (wide, high)),
         (PLUG_SHOULDER, (body, high)),
-        ("plug", (body, 0.0)),
+        ("plug", (body, layout.floor)),
     ]
     if layout.port_axis is not None:
         neck, step = plug_neck(scene, layout)
         relief: TracedPath = [
             ("plug", (body, step)),
             ("neck", (neck, step)),
-            ("neck", (neck, 0.0)),
-            ("plug top", (0.0, 0.0)),
+            ("neck", (neck, layout.floor)),
+            ("plug top", (0.0, layout.floor)),
         ]
         return trace((0.0, layout.under), [*faces[:-1], *relief])
     start, port = outward(layout)
-    return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *_inward(layout)])
+    return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, layout.floor)), *_inward(layout)])
 
 
 LIP = 0.3
@@ -207,7 +207,7 @@ def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
             ("ring top", (flange, 0.0)),
             (SEAT, (flange, high)),
             (SEAT, (inner, high)),
-            (SEAT, (inner, 0.0)),
+            (SEAT, (inner, layout.floor)),
         ]
     # A cast flange leans: at its underside, where it rests, it is wider inside by the draft.
     floor: TracedPath = [
@@ -215,7 +215,7 @@ def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
         ("groove floor", (flange, high)),
         (SEAT, (inner + layout.flange_draft, high)),
         ("groove floor", (layout.groove_inner, high)),
-        ("groove inner", (layout.groove_inner, 0.0)),
+        ("groove inner", (layout.groove_inner, layout.floor)),
     ]
     if isinstance(seat, ClampedFlange):
         return [*plate, *floor]

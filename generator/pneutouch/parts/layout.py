@@ -31,6 +31,9 @@ HEAD_GAP = 0.5
 CLAMPED_SHARE = 0.5
 """Share of the flange's width that a ring presses on; the rest leaves the dome space to bulge."""
 
+_SPIGOT = 1.0
+"""Least height in mm of the spigot behind a flat wall, so that it centres the flange: own choice."""
+
 _UNDER_PORT = 0.3
 """Distance in mm below the passage of a side port at which the plug becomes thinner."""
 
@@ -80,6 +83,11 @@ class Layout:
         return self.shape.outer_radius
 
     @property
+    def floor(self) -> float:
+        """Height of the connector's top inside the dome."""
+        return self.shape.floor
+
+    @property
     def flange_radius(self) -> float:
         """Outer radius of the flange."""
         return self.outer_radius + self.flange_width
@@ -124,7 +132,7 @@ def lay_out(scene: ResolvedDesign) -> Layout:
 def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> Layout:
     """The layout of a scene around a dome of another shape or size."""
     seat, mount = scene.seat, scene.mount
-    flange, deep = _flange(scene, shape.wall_thickness)
+    flange, deep = _flange(scene, shape)
     clearance, edge = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance, shape.outer_radius + flange
     inside = None
     if isinstance(seat, CastRing):
@@ -163,13 +171,15 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
     )
 
 
-def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
-    """Width and thickness of the flange: one length for both, or those of the web of a ring and silicone around it."""
+def _flange(scene: ResolvedDesign, shape: DomeShape) -> tuple[float, float]:
+    """Width and thickness of the flange: one length for both, or those of the web of a ring and silicone around it. A
+    wall that leans at its rim has the thickness that leaves a spigot behind it."""
     seat, web = scene.seat, scene.design.cast_ring
-    least = max(seat.least_flange_mm, seat.flange_over_wall * wall)
+    least = max(seat.least_flange_mm, seat.flange_over_wall * shape.wall_thickness)
+    deep = max(least, _SPIGOT - shape.floor) if shape.floor < 0.0 else least
     if not isinstance(seat, CastRing):
-        return least, least
-    return max(least, web.width_mm + seat.lip_mm), max(least, web.thickness_mm + 2 * seat.lip_mm)
+        return least, deep
+    return max(least, web.width_mm + seat.lip_mm), max(deep, web.thickness_mm + 2 * seat.lip_mm)
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:

@@ -19,12 +19,13 @@ def membrane_meridian(layout: Layout) -> Meridian:
     around a ring keeps its collar, upright outside. The meridian then is the outline of silicone and web together.
     """
     inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
+    rim = layout.shape.inner[0].start
     low, draft = -layout.flange_thickness, layout.flange_draft
     edge = draft if layout.ring is None else 0.0
     return Meridian(
         (
             *(piece.reverse() for piece in reversed(layout.shape.inner)),
-            Line((inner, 0.0), (inner + draft, low), HELD),
+            Line(rim, (inner + draft, low), HELD),
             Line((inner + draft, low), (flange, low), HELD),
             Line((flange, low), (flange - edge, 0.0), HELD),
             Line((flange - edge, 0.0), (outer, 0.0), "flange top"),

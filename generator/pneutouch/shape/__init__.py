@@ -1,9 +1,66 @@
 """Shapes of the dome; solid, print mesh, mould and finite elements of a membrane are derived from its shape."""
 
+import dataclasses
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import FilletedHemisphere, Hemisphere
+from pneutouch.spec.fields import FieldsError
 
-SHAPES: dict[str, type[DomeShape]] = {shape.key: shape for shape in (Hemisphere,)}
-"""Classes of shapes by their name in a design file; called with inner radius and wall thickness, mm."""
+SHAPES: dict[str, str | type[DomeShape]] = {
+    "hemisphere": Hemisphere,
+    "cap": "cap.Cap",
+    "ellipsoid": "ellipsoid.Ellipsoid",
+    "thimble": "ellipsoid.Thimble",
+    "disc": "disc.Disc",
+    "corrugated": "disc.CorrugatedDisc",
+    "profile": "profile.Profile",
+}
+"""Shapes by their name in a design file: a class, or the file and class of this folder that are loaded on first use."""
 
-__all__ = ["SHAPES", "DomeShape", "FilletedHemisphere", "Hemisphere"]
+
+def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mapping[str, Any]) -> DomeShape:
+    """The shape named ``key`` with its further sizes by field (mm); those left out are the usual ones.
+
+    Raises FieldsError for a size that the shape does not have, or that makes it impossible.
+    """
+    kind = FilletedHemisphere if key == Hemisphere.key and "root_fillet" in sizes else _loaded(SHAPES[key])
+    own = dataclasses.fields(kind)[2:]
+    for size in sizes:
+        if size not in [field.name for field in own]:
+            takes = " and ".join(f"membrane.{key_of(field.name)}" for field in own) or "no further size"
+            raise FieldsError(f'the shape "{key}" has no {key_of(size)}; it takes {takes}', "shape", key_of(size))
+    usual = {size: share * inner_radius for size, share in kind.usual.items()}
+    known = {**usual, **{name: _fixed(size) for name, size in sizes.items()}}
+    for field in own:
+        if field.default is dataclasses.MISSING and field.name not in known:
+            raise FieldsError(f'the shape "{key}" needs membrane.{key_of(field.name)}', key_of(field.name))
+    shape = kind(inner_radius, wall_thickness, **known)
+    if shape.fault is not None:
+        size, why = shape.fault
+        stated = f" = {known[size]:g}" if isinstance(known.get(size), float) else ""
+        raise FieldsError(f"{key_of(size)}{stated}: {why}", key_of(size))
+    return shape
+
+
+def key_of(size: str) -> str:
+    """Key of a size in a design file, by its field."""
+    return size if size == "grooves" else f"{size}_mm"
+
+
+def _loaded(shape: str | type[DomeShape]) -> type[DomeShape]:
+    if not isinstance(shape, str):
+        return shape
+    module, _, name = shape.partition(".")
+    kind: type[DomeShape] = getattr(import_module(f"{__name__}.{module}"), name)
+    return kind
+
+
+def _fixed(size: Any) -> Any:
+    """A size as a hashable value; a point without a radius is not rounded."""
+    return tuple((*point, 0.0)[:3] for point in size) if isinstance(size, list) else size
+
+
+__all__ = ["SHAPES", "DomeShape", "FilletedHemisphere", "Hemisphere", "shape_of"]

@@ -1,6 +1,8 @@
 """The form of a dome at rest: two faces over one base plane, and the quantities derived from them."""
 
+import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
@@ -8,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.shape.meridian import Point, Segment
+from pneutouch.shape.meridian import Line, Point, Segment
 
 INNER_WALL = "inner wall"
 OUTER_WALL = "outer wall"
@@ -17,18 +19,21 @@ OUTER_WALL = "outer wall"
 
 @dataclass(frozen=True, slots=True)
 class DomeShape(ABC):
-    """A dome over the base plane z = 0, lengths in mm.
+    """A dome over the base plane z = 0, the top of its flange; lengths in mm.
 
-    This is a base class, not a protocol: a shape defines its faces and inherits all derived quantities. Each face is a
-    chain of pieces from the base to the pole. Pieces with the same index are opposite each other: straight lines across
-    the wall connect equal shares of their lengths. A shape with more sizes adds fields for it. ``inner_radius`` is the
-    radius of the inner face at the base, ``key`` the name in a design file, ``adjective`` the shape in words.
+    This is a base class, not a protocol: a shape defines its faces and inherits all derived quantities. Each face
+    is a chain of pieces from the base to the pole. Pieces with the same index are opposite each other: straight
+    lines across the wall connect equal shares of their lengths. A shape with more sizes adds fields for it.
+    ``inner_radius`` is the radius of the inner face at the base, ``key`` the name in a design file, ``adjective``
+    the shape in words, ``usual`` further sizes over the inner radius where none are given. The outer face begins in
+    the base plane, the inner one in it or, where the wall leans at its rim, below.
     """
 
     inner_radius: float
     wall_thickness: float
     key: ClassVar[str]
     adjective: ClassVar[str]
+    usual: ClassVar[Mapping[str, float]] = {}
 
     @property
     @abstractmethod
@@ -56,9 +61,19 @@ class DomeShape(ABC):
         return self.outer[0].start[0]
 
     @property
-    def height(self) -> float:
-        """Height of the pole of the inner face."""
+    def floor(self) -> float:
+        """Height of the rigid body behind the dome: that of the inner face's rim, for a flat wall lower."""
+        return self.inner[0].start[1]
+
+    @property
+    def inner_height(self) -> float:
+        """Height of the pole of the inner face over the base plane."""
         return self.inner[-1].end[1]
+
+    @property
+    def height(self) -> float:
+        """Height of the pole of the inner face over the floor."""
+        return self.inner_height - self.floor
 
     @property
     def outer_height(self) -> float:
@@ -67,8 +82,24 @@ class DomeShape(ABC):
 
     @property
     def cavity_volume(self) -> float:
-        """Volume under the inner face down to the base plane, mm3."""
-        return sum(piece.swept() for piece in self.inner)
+        """Volume under the inner face down to the floor, mm3."""
+        return sum(piece.swept() for piece in self.inner) + self.pocket
+
+    @property
+    def pocket(self) -> float:
+        """Volume between the floor and the inner face's rim, mm3."""
+        return math.pi * self.inner_radius**2 * (self.inner[0].start[1] - self.floor)
+
+    @property
+    def wall_volume(self) -> float:
+        """Volume of the wall between its faces and the edge where it is clamped, mm3."""
+        edge = Line(self.inner[0].start, self.outer[0].start, "")
+        return sum(piece.swept() for piece in (edge, *self.outer)) - sum(piece.swept() for piece in self.inner)
+
+    @property
+    def fault(self) -> tuple[str, str] | None:
+        """Field that makes the shape impossible, and the reason in words; None if it can be made."""
+        return None
 
     @property
     def arcs(self) -> tuple[float, float]:
@@ -92,7 +123,9 @@ class DomeShape(ABC):
         # The lean is interpolated linearly between the places, which is exact on an arc.
         share = np.linspace(1.0, 0.0, 2001)
         normal = self.normals(share)
-        place = np.interp(lean, np.arctan2(normal[:, 0], normal[:, 1]), share)
+        # On a wavy face the place farthest from the axis up to which it leans no more.
+        leans = np.maximum.accumulate(np.arctan2(normal[:, 0], normal[:, 1]))
+        place = np.interp(lean, leans, share)
         ((r, z),) = self._of_face(self.outer, np.array([place])).tolist()
         return r, z
 

@@ -43,6 +43,12 @@ class Line:
         """The same piece, from its end to its start."""
         return Line(self.end, self.start, self.tag)
 
+    def moved(self, outwards: float, up: float, tag: str) -> "Line":
+        """The piece moved to the right of its direction by ``outwards`` and along z by ``up``, mm."""
+        (nr, nz), points = self.normals(np.zeros(1))[0].tolist(), (self.start, self.end)
+        one, other = ((r + outwards * nr, z + outwards * nz + up) for r, z in points)
+        return Line(one, other, tag)
+
     def swept(self) -> float:
         """The integral of pi r^2 dz along the piece, mm3 (a truncated cone, signed by direction)."""
         (r0, z0), (r1, z1) = self.start, self.end
@@ -120,6 +126,11 @@ class Arc:
     def reverse(self) -> "Arc":
         """The same piece, from its end to its start."""
         return Arc(self.centre, self.radius, self.last, self.first, self.tag)
+
+    def moved(self, outwards: float, up: float, tag: str) -> "Arc":
+        """The concentric arc to the right of the piece by ``outwards``, moved along z by ``up``, mm."""
+        radius = self.radius + math.copysign(outwards, self.last - self.first)
+        return Arc((self.centre[0], self.centre[1] + up), radius, self.first, self.last, tag)
 
     def swept(self) -> float:
         """The integral of pi r^2 dz along the piece, mm3 (closed form, signed by direction)."""

@@ -34,18 +34,18 @@ def _coefficient(value: float) -> float:
     return value
 
 
-def _corners(corners: list[list[float]]) -> list[list[float]]:
+def corners(points: list[list[float]]) -> list[list[float]]:
     """Check a profile's points [r, z] or [r, z, corner radius], mm. Raises ValueError for too many or too large."""
-    if not 2 <= len(corners) <= _MOST_CORNERS:
-        raise ValueError(f"profile_mm has {len(corners)} points; give 2 to {_MOST_CORNERS}")
-    for index, corner in enumerate(corners):
+    if not 2 <= len(points) <= _MOST_CORNERS:
+        raise ValueError(f"profile_mm has {len(points)} points; give 2 to {_MOST_CORNERS}")
+    for index, corner in enumerate(points):
         if len(corner) not in (2, 3):
             raise EntryError("a point is [r, z] or [r, z, radius], mm", index, corner)
         r, z, radius = (*corner, 0.0)[:3]
         if not (0.0 <= r <= LARGEST and abs(z) <= LARGEST and 0.0 <= radius <= LARGEST):
             problem = f"r and the radius must be from 0 to {LARGEST:g} mm, z from {-LARGEST:g} to {LARGEST:g} mm"
             raise EntryError(problem, index, corner)
-    return corners
+    return points
 
 
 Friction = Annotated[
@@ -90,7 +90,7 @@ class ContactTable(Table):
     cylinder_radius_mm: float | None = number(
         None, unit="mm", low=0.05, high=LARGEST, help="Radius of a lying cylinder."
     )
-    profile_mm: Annotated[list[list[float]], AfterValidator(_corners)] | None = Field(
+    profile_mm: Annotated[list[list[float]], AfterValidator(corners)] | None = Field(
         default=None,
         json_schema_extra={"unit": "mm", "low": -LARGEST, "high": LARGEST},
         description="Underside of a body of one's own: points [r, z] or [r, z, radius] from the axis outwards, z "

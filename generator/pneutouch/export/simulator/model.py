@@ -16,7 +16,7 @@ from pneutouch.export.scene import stl
 from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
 from pneutouch.shape.dome import DomeShape
-from pneutouch.shape.meridian import Segment
+from pneutouch.shape.meridian import Line, Segment
 from pneutouch.wording import rounded
 
 TEXTS = Path(__file__).parent
@@ -188,24 +188,37 @@ def moving_share(shape: DomeShape, density: float) -> RigidInertia:
     """Inertia that moves with the apex, at the centroid of the wall, by the ``density`` in kg/m3.
 
     A wall whose points move in proportion to their height z has the kinetic energy of the mass of z2/h2: over a
-    hemisphere z is evenly spread (Archimedes), and that is a third of the wall's.
+    hemisphere z is evenly spread (Archimedes), and that is a third of the wall's. A flat wall moves as a clamped plate
+    under an even pressure, by (1 - r2/R2)2, which is a fifth.
     """
-    (_, _, under), (area, square, over) = _moments(shape.inner), _moments(shape.outer)
-    volume = sum(piece.swept() for piece in shape.outer) - shape.cavity_volume
-    mass = density * _M**3 * volume * square / area / shape.outer_height**2
-    return ball_inertia(mass, _M * np.array([0.0, 0.0, (over - under) / volume]), 0.5 * _M * shape.outer_radius)
+    edge = Line(shape.inner[0].start, shape.outer[0].start, "")
+    area, square = _motion(shape.outer, flat=shape.outer_height < shape.wall_thickness)
+    mass = density * _M**3 * shape.wall_volume * square / area
+    middle = (_within((edge, *shape.outer)) - _within(shape.inner)) / shape.wall_volume
+    return ball_inertia(mass, _M * np.array([0.0, 0.0, middle]), 0.5 * _M * shape.outer_radius)
 
 
-def _moments(face: Sequence[Segment]) -> tuple[float, float, float]:
-    """Area of a face (mm2), the integral of z2 over it (mm4), and the integral of z over the space within (mm4)."""
-    at, weight = np.polynomial.legendre.leggauss(_GAUSS)
-    area, square, within = 0.0, 0.0, 0.0
+_AT, _WEIGHT = np.polynomial.legendre.leggauss(_GAUSS)
+_SHARE = 0.5 * (1.0 + _AT)
+
+
+def _motion(face: Sequence[Segment], *, flat: bool) -> tuple[float, float]:
+    """Area of a face (mm2) and the integral of its squared motion over it (mm2), that of the pole being 1."""
+    area, square, rim, high = 0.0, 0.0, face[0].start[0], face[-1].end[1]
     for piece in face:
-        share = 0.5 * (1.0 + at)
-        (r, z), rise = piece.along(share).T, piece.normals(share)[:, 0]
-        ring = np.pi * r * weight * piece.length
-        area, square, within = area + ring.sum(), square + ring @ z**2, within + 0.5 * ring @ (r * z * rise)
-    return float(area), float(square), float(within)
+        r, z = piece.along(_SHARE).T
+        ring, moved = np.pi * r * _WEIGHT * piece.length, (1.0 - (r / rim) ** 2) ** 2 if flat else z / high
+        area, square = area + float(ring.sum()), square + float(ring @ moved**2)
+    return area, square
+
+
+def _within(face: Sequence[Segment]) -> float:
+    """Integral of z over the space within a face (mm4)."""
+    total = 0.0
+    for piece in face:
+        (r, z), rise = piece.along(_SHARE).T, piece.normals(_SHARE)[:, 0]
+        total += 0.5 * float((np.pi * r * _WEIGHT * piece.length) @ (r * z * rise))
+    return total
 
 
 _DIGITS = 9

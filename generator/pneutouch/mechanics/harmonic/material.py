@@ -290,8 +290,8 @@ plane (divergence theorem). On a surface of revolution it is r^2 z'/2."""
 class HarmonicCavity(Cavity):
     """The volume as a cubic polynomial of the coefficients, integrated exactly along the meridian and the angle."""
 
-    def __init__(self, edges: Index, harmonics: Harmonics, signs: Array) -> None:
-        super().__init__(edges)
+    def __init__(self, edges: Index, below: float, harmonics: Harmonics, signs: Array) -> None:
+        super().__init__(edges, below)
         x, w = np.polynomial.legendre.leggauss(edges.shape[1])
         value, slope = line_shapes(x, edges.shape[1])
         angles = harmonics.angles
@@ -327,4 +327,4 @@ class HarmonicCavity(Cavity):
 
     def _volume(self, fields: Array) -> float:
         parts = (factor * fields[..., i] * fields[..., k] * fields[..., m] for factor, i, k, m in _PRODUCTS)
-        return float(np.vdot(np.broadcast_to(self._measure, fields.shape[:3]), sum(parts)))
+        return float(np.vdot(np.broadcast_to(self._measure, fields.shape[:3]), sum(parts))) + self.below

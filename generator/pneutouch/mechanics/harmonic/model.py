@@ -94,7 +94,7 @@ class HarmonicModel(SolidModel):
         self.size = int(self.dofs.max()) + 1
         self._operators(signs)
         self._patterns(forms={0: self._field.entries(self.dofs)})
-        self.cavity = HarmonicCavity(self.mesh.inner, harmonics, signs)
+        self.cavity = HarmonicCavity(self.mesh.inner, solid.cavity.below, harmonics, signs)
         self.contact = HarmonicContact(solid, harmonics, signs)
         self.base = None
         if solid.base is not None:

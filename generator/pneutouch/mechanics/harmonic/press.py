@@ -263,7 +263,7 @@ class OffAxisPress:
             stretch=probe.greatest_stretch(x),
             penetration=max(base.penetration, -float(touch.gap.min())) * length,
             inner_height=model.lowest(x, model.mesh.inner, _UPPER) * length,
-            overhang=max(0.0, float(model.rest[:, 1].min()) - model.lowest(x, model.mesh.outer)) * length,
+            overhang=max(0.0, self._solid.bottom - model.lowest(x, model.mesh.outer)) * length,
             base_force=base.force * mu * length**2,
             positions=x * length,
         )
@@ -275,7 +275,7 @@ class OffAxisPress:
             "gauge_range": press.gauge_range,
             "break": press.break_strain,
             OBJECT_EDGE: self.surface.span[1] * self._solid.length,
-            "floor": 0.0,
+            "floor": -self._solid.mesh.floor,
             "overhang": OVERHANG * wall,
             "base": BASE_SHARE,
         }

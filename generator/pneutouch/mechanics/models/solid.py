@@ -196,11 +196,14 @@ def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
 
 
 def _base(sensor: Sensor) -> RigidBase | None:
-    """Rigid base for the solid (None without one); for a printed flange the outer wall meets it outside the flange."""
-    dome = sensor.dome
-    if dome.base is None or dome.flange is None:
+    """Rigid base for the solid (None without one); the outer wall meets it outside a printed flange, or a wall that
+    leans at its rim and can be pressed below the base plane."""
+    dome, shape = sensor.dome, sensor.dome.shape
+    leans = shape.floor < 0.0
+    if dome.base is None or (dome.flange is None and not leans):
         return dome.base
-    return replace(dome.base, flange=dome.shape.outer_radius + dome.flange[0])
+    wide = 0.0 if dome.flange is None else dome.flange[0]
+    return replace(dome.base, flange=shape.outer_radius + wide)
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:

@@ -79,13 +79,19 @@ class BaseMeeting:
 
 class BaseFace(FacePoints):
     """The quadrature points of one face of the wall, and the base that they can meet: flat from the radius ``start``
-    outward, with a ring that begins at radius ``ring[0]`` and rises to ``ring[1]``; R0."""
+    outward at the height ``low``, with a ring that begins at radius ``ring[0]`` and rises to ``ring[1]``; R0."""
 
     def __init__(
-        self, edges: Index, rest: Array, contact: Contact, start: float, ring: tuple[float, float] = (0.0, 0.0)
+        self,
+        edges: Index,
+        rest: Array,
+        contact: Contact,
+        start: float,
+        ring: tuple[float, float] = (0.0, 0.0),
+        low: float = 0.0,
     ) -> None:
         super().__init__(edges, rest, contact.stiffness)
-        self.start = start
+        self.start, self._low = start, low
         self._ring, self.high = ring
         # Edges and corners of the base are as round as the longest cell, as the rim of a plate is.
         self._rim = contact.longest
@@ -93,7 +99,7 @@ class BaseFace(FacePoints):
     def meet(self, nodes: Array) -> BaseMeeting | None:
         """Contact at positions (n_nodes, 2); None if no point is below the base's surface."""
         r, z = self.positions(nodes)
-        if z.min() >= self.high:
+        if z.min() >= self._low + self.high:
             return None
         height, slope, curve = self.surface(r)
         traction = np.maximum(self.stiffness * (height - z), 0.0)
@@ -102,7 +108,7 @@ class BaseFace(FacePoints):
     def surface(self, r: Array) -> tuple[Array, Array, Array]:
         """Height (R0) of the base at radii r, and its first two derivatives, arrays like r."""
         rim, short = self._rim, np.maximum(self.start - r, 0.0)
-        height, slope, curve = -0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
+        height, slope, curve = self._low - 0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
         if self.high:
             for corner, sign in ((self._ring, 1.0), (self._ring + self.high, -1.0)):
                 along = np.clip((r - corner) / rim + 0.5, 0.0, 1.0)

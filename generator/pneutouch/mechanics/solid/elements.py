@@ -151,11 +151,11 @@ class EnergyTerm(Protocol):
 class Cavity:
     """The volume V = pi int r^2 dz along the inner wall from base to apex; r^2 z' is integrated exactly.
 
-    It is the volume above the plane through the wall's first point; a flat floor below would add only a constant.
+    It is the volume above the plane through the wall's first point, and a constant ``below`` it.
     """
 
-    def __init__(self, edges: Index) -> None:
-        self.edges = edges
+    def __init__(self, edges: Index, below: float = 0.0) -> None:
+        self.edges, self.below = edges, below
         x, w = np.polynomial.legendre.leggauss(edges.shape[1])
         value, slope = line_shapes(x, edges.shape[1])
         n = edges.shape[1]
@@ -173,7 +173,7 @@ class Cavity:
     def volume(self, nodes: Array) -> float:
         """Enclosed volume at nodal positions (n_nodes, 2)."""
         r, _, _, half = self._parts(nodes)
-        return float(np.vdot(r, half))
+        return float(np.vdot(r, half)) + self.below
 
     def gradient(self, nodes: Array) -> tuple[float, Array]:
         """Volume and its derivative by edge positions, (n_edges, 2 n), r and z interleaved."""
@@ -181,7 +181,7 @@ class Cavity:
         out = np.empty((r.shape[0], 2 * self._n))
         out[:, RADIAL] = 2.0 * half
         out[:, AXIAL] = (r[:, :, None] * r[:, None, :]).reshape(r.shape[0], -1) @ self._form
-        return float(np.vdot(r, half)), out
+        return float(np.vdot(r, half)) + self.below, out
 
     def hessian(self, nodes: Array) -> Array:
         """Second derivative of the volume by edge positions, symmetric; (n_edges, 2 n, 2 n)."""

@@ -29,7 +29,7 @@ from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import UnreachableLoadError
-from pneutouch.mechanics.solid.object_contact import Footprint, Plate
+from pneutouch.mechanics.solid.object_contact import Footprint, Indenter, Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
@@ -188,9 +188,22 @@ def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
     return Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
 
 
+_BESIDE = np.linspace(0.0, 3.0, 301)
+"""Distances (R0) beside the wall at which an object is held against the flange."""
+
+
+def travel_to_rim(solid: SolidModel, body: Indenter) -> float:
+    """Travel (R0) of an object from its height at which it meets the flange beside the wall, or a ring on it; inf
+    without a base."""
+    if solid.base is None:
+        return np.inf
+    beside = solid.rest[solid.mesh.outer[0, 0], 0] + _BESIDE
+    return float((body.underside(beside)[0] - solid.base.outer.surface(beside)[0]).min())
+
+
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
-    """True if an event ends the press: the inner wall reaches the base plane where the solid has no base."""
-    return solid.base is None and any(e.kind == "floor" for e in events)
+    """True if an event ends the press: the object on the flange, or the inner wall on a floor that is not modelled."""
+    return any(e.kind == "rim" or (e.kind == "floor" and solid.base is None) for e in events)
 
 
 def _finish(
@@ -213,6 +226,7 @@ class _Recorder:
         # A first contact within an edge length of the axis counts as contact on the axis.
         self._annular = touch.radius > solid.contact.longest
         self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
+        self._to_rim = travel_to_rim(solid, self._plate) * solid.length
 
     def indentation(self, height: float) -> float:
         """Plate travel (mm) since first contact at a nondimensional height."""
@@ -245,7 +259,7 @@ class _Recorder:
             fold=peak.fold,
             penetration=max(base.penetration, -float(touch.gap.min())) * length,
             inner_apex=float(x[solid.mesh.inner_apex, 1]) * length,
-            overhang=max(0.0, float((solid.rest[:, 1].min() - x[:, 1]).max()) * length),
+            overhang=max(0.0, float((solid.bottom - x[:, 1]).max()) * length),
             base_force=base.force * mu * length**2,
             base_pressure=base.traction * mu,
             positions=x * length,
@@ -261,9 +275,10 @@ class _Recorder:
             "crease": CREASE,
             "separation": SEPARATION * wall,
             self._edge: outer,
-            "floor": 0.0,
+            "floor": -self._solid.mesh.floor,
             "overhang": OVERHANG * wall,
             "base": BASE_SHARE,
+            "rim": self._to_rim,
         }
         before, after = _watched(a, self._edge), _watched(b, self._edge)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
@@ -295,4 +310,5 @@ def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:
         "floor": PathPoint(s.indentation, -s.inner_apex),
         "overhang": PathPoint(s.indentation, s.overhang),
         "base": PathPoint(s.indentation, s.base_force / max(s.force, 1.0e-300)),
+        "rim": PathPoint(s.indentation, s.indentation, 1.0),
     }

@@ -39,6 +39,7 @@ class SolidMesh:
     sliding: nodes with only the vertical displacement zero (a symmetry plane).
     length, wall: units of length of the solver (`DomeShape.scale`) and of the contact's stiffness (wall thickness).
     flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; empty without one.
+    floor: height of the rigid body behind the wall (`DomeShape.floor`).
     """
 
     nodes: Array
@@ -51,6 +52,13 @@ class SolidMesh:
     length: float
     wall: float
     flange: Index = field(default_factory=lambda: np.zeros((0, 3), dtype=np.intp))
+    floor: float = 0.0
+
+    @property
+    def pocket(self) -> float:
+        """Volume between the floor and the inner face's rim, mm3."""
+        radius, height = self.nodes[self.inner[0, START]].tolist()
+        return float(np.pi * radius**2 * (height - self.floor))
 
     @property
     def inner_apex(self) -> int:
@@ -164,7 +172,7 @@ def dome(
         raise ValueError("inner_radius {} and wall_thickness {} must be positive and finite".format(*size))
     arc, through = cell_counts(shape, arc, through)
     grid = shape.points(with_middles(graded(arc, base_ratio)), with_middles(np.linspace(0.0, 1.0, through + 1)))
-    mesh = _from_grid(grid, arc, through, order, (shape.scale, shape.wall_thickness))
+    mesh = replace(_from_grid(grid, arc, through, order, (shape.scale, shape.wall_thickness)), floor=shape.floor)
     if not slides:
         return mesh
     return replace(mesh, clamped=mesh.sliding, sliding=mesh.clamped)

@@ -88,6 +88,7 @@ class SolidModel:
         self.length, self.mu = mesh.length, material.mu
         self.wall = mesh.wall / mesh.length
         self.rest = mesh.nodes / mesh.length
+        self.bottom = min(float(self.rest[:, 1].min()), mesh.floor / mesh.length)
         self._integration()
         self._assemble(base)
         # Rounding leaves this much force in the exact unloaded state; no residual can fall below it.
@@ -110,7 +111,7 @@ class SolidModel:
         self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
         folding = self.dofs[meeting].reshape(meeting.shape[0], 2 * meeting.shape[1])
         self._patterns(_half_width(folding), folding)
-        self.cavity = Cavity(mesh.inner)
+        self.cavity = Cavity(mesh.inner, mesh.pocket / self.length**3)
         self.contact = Contact(mesh, self.rest, float(self.relative.max()) * CONTACT_STIFFNESS / self.wall)
         self.base = None if base is None else BaseContact(*self._base_faces(base), self.faces)
         self.supports: tuple[BaseContact | FlangeContact, ...] = () if self.base is None else (self.base,)
@@ -137,7 +138,7 @@ class SolidModel:
         """Contact of the outer face and of the inner face with a base (mm)."""
         flange, opening, *ring = (x / self.length for x in (base.flange, base.opening, base.ring, base.ring_height))
         outer = BaseFace(self.mesh.outer, self.rest, self.contact, flange, (ring[0], ring[1]))
-        return outer, BaseFace(self.mesh.inner, self.rest, self.contact, opening)
+        return outer, BaseFace(self.mesh.inner, self.rest, self.contact, opening, low=self.mesh.floor / self.length)
 
     def base_load(self, x: Array) -> BaseLoad:
         """Load of the outer wall on its base and on its own flange at positions x (n_nodes, 2)."""

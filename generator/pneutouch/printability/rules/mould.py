@@ -262,10 +262,10 @@ def _bubble(part: PrintPart, context: SensorContext, casting: Casting) -> float:
     """Diameter of the largest bubble that does not rise by the dome's height in the pot life left, mm."""
     assert casting.mixed_viscosity_Pa_s is not None
     seconds = 60 * max(_left_min(casting), 1.0)
-    speed = 1e-3 * context.sensor.dome.shape.outer_height / seconds
+    speed = 1e-3 * max(context.sensor.dome.shape.outer_height, context.sensor.dome.wall_thickness) / seconds
     return float(2e3 * np.sqrt(4.5 * casting.mixed_viscosity_Pa_s.nominal * speed / _weight(part)))
 
 
 def _pole(context: SensorContext) -> tuple[float, float, float]:
     shape = context.sensor.dome.shape
-    return (0.0, 0.0, 0.5 * (shape.height + shape.outer_height))
+    return (0.0, 0.0, 0.5 * (shape.inner_height + shape.outer_height))

@@ -70,7 +70,7 @@ def check_layers(view: PrintView) -> list[Finding]:
     counts = f"{best / layer.size:.0f} layers and {best / pixel.size:.1f} pixels"
     fix = part.item.hints.get("layers", f"draw the wall {best:.3f} mm thick: {counts}")
     at = (
-        (0.0, 0.0, shape.height + 0.5 * wall)
+        (0.0, 0.0, shape.inner_height + 0.5 * wall)
         if missed[0].place == "pole"
         else (shape.inner_radius + 0.5 * wall, 0.0, 0.0)
     )

@@ -1,0 +1,144 @@
+"""The shipped shapes: textbook volumes, one thickness, arcs on ellipses, equal figures of equal forms, and refusals."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pneutouch.catalogue import load_scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation import evaluate
+from pneutouch.shape import shape_of
+from pneutouch.shape.ellipsoid import quarter
+from pneutouch.shape.even import biarc, fitted
+from tests.shape.shapes import shipped
+
+HALF_BALLS = {
+    "cap": {"membrane.rise_mm": 9.25},
+    "ellipsoid": {"membrane.rise_mm": 9.25},
+    "profile": {"membrane.profile_mm": [[9.25, 0.0], [9.25, 9.25, 9.25], [0.0, 9.25]]},
+}
+
+
+def test_cavities_have_textbook_volumes():
+    def volume(key, **sizes):
+        return shape_of(key, 9.25, 1.0, sizes).cavity_volume
+
+    assert volume("cap", rise=4.0) == pytest.approx(math.pi * 4.0 / 6 * (3 * 9.25**2 + 4.0**2), rel=1e-12)
+    assert volume("ellipsoid", rise=5.0) == pytest.approx(2 / 3 * math.pi * 9.25**2 * 5.0, rel=3e-5)
+    assert volume("ellipsoid", rise=14.0) == pytest.approx(2 / 3 * math.pi * 9.25**2 * 14.0, rel=3e-5)
+    thimble = math.pi * 9.25**2 * 6.0 + 2 / 3 * math.pi * 9.25**3
+    assert volume("thimble", side=6.0) == pytest.approx(thimble, rel=1e-12)
+    assert volume("disc", cavity_depth=3.0) == pytest.approx(math.pi * 9.25**2 * 3.0, rel=1e-12)
+    level = volume("corrugated", rise=1e-3, cavity_depth=3.0)
+    assert level == pytest.approx(math.pi * 9.25**2 * 3.0, rel=1e-3)
+
+
+@given(radius=st.floats(1.0, 50.0), share=st.floats(0.15, 3.0))
+def test_arcs_stay_within_a_micrometre_of_the_ellipse(radius, share):
+    rise = share * radius
+    # Density along the arc, where a place is nearest to the ellipse by Newton's method on its angle.
+    points = np.concatenate([piece.along(np.linspace(0.0, 1.0, 33)) for piece in quarter(radius, rise)])
+    angle = np.arctan2(points[:, 1] / rise, points[:, 0] / radius)
+    for _ in range(20):
+        c, s = np.cos(angle), np.sin(angle)
+        apart = np.stack([radius * c, rise * s], axis=1) - points
+        along = np.stack([-radius * s, rise * c], axis=1)
+        turned = (along**2).sum(axis=1) + (apart * np.stack([-radius * c, -rise * s], axis=1)).sum(axis=1)
+        angle = angle - (apart * along).sum(axis=1) / turned
+    near = np.stack([radius * np.cos(angle), rise * np.sin(angle)], axis=1)
+    assert np.linalg.norm(near - points, axis=1).max() < 1e-3
+
+
+@given(turn=st.floats(-2.0, 2.0), lean=st.floats(-1.2, 1.2), span=st.floats(0.1, 50.0))
+def test_two_arcs_leave_and_arrive_as_asked_and_meet_smoothly(turn, lean, span):
+    leaving, arriving = ((math.cos(a), math.sin(a)) for a in (lean, lean + turn))
+    one, other = biarc((1.0, 2.0), leaving, (1.0 + span, 2.0), arriving)
+
+    def heading(piece, at):
+        return np.array([-1.0, 1.0]) * piece.normals(np.array([at]))[0][::-1]
+
+    assert one.start == pytest.approx((1.0, 2.0), abs=1e-9) and other.end == pytest.approx((1.0 + span, 2.0), abs=1e-9)
+    assert heading(one, 0.0) == pytest.approx(leaving, abs=1e-9)
+    assert heading(other, 1.0) == pytest.approx(arriving, abs=1e-9)
+    assert one.end == pytest.approx(other.start, abs=1e-9 * span)
+    assert heading(one, 1.0) == pytest.approx(heading(other, 0.0), abs=1e-8)
+
+
+def test_arcs_fitted_to_a_wave_follow_it():
+    def wave(share):
+        x = 6.0 * share
+        return np.stack([x, np.sin(x)], axis=1), np.stack([np.ones_like(x), np.cos(x)], axis=1)
+
+    pieces = fitted(wave, 1e-4)
+    assert np.min([piece.distance(wave(np.linspace(0, 1, 999))[0]) for piece in pieces], axis=0).max() < 2e-4
+    assert all(one.end == pytest.approx(other.start, abs=1e-12) for one, other in pairwise(pieces))
+
+
+@pytest.mark.parametrize("shape", shipped(9.25, 0.8), ids=lambda shape: shape.key)
+def test_the_wall_is_as_thick_as_stated_everywhere_but_on_a_boss(shape):
+    share = np.linspace(0.0, 1.0, 501)
+    inner, outer = np.moveaxis(shape.points(share, np.array([0.0, 1.0])), 1, 0)
+    if getattr(shape, "boss_height", 0.0):
+        inner, outer = inner[inner[:, 0] > 3.6], outer[inner[:, 0] > 3.6]
+    assert np.linalg.norm(outer - inner, axis=1) == pytest.approx(0.8, rel=1e-9)
+    off = np.min([piece.distance(outer) for piece in shape.inner], axis=0)
+    assert off == pytest.approx(0.8, rel=1e-9)
+
+
+@pytest.mark.parametrize("key", HALF_BALLS)
+def test_a_hemisphere_under_another_name_has_its_figures(key, evaluated):
+    usual = evaluated("paper-dome").prediction
+    other = evaluate("paper-dome", {"membrane.shape": key, **HALF_BALLS[key]}).prediction
+    assert other.limit_point.driving_pressure == pytest.approx(usual.limit_point.driving_pressure, rel=1e-6)
+    for one, two in zip(usual.states, other.states, strict=True):
+        assert two.figures.sensitivity == pytest.approx(one.figures.sensitivity, rel=1e-6)
+        assert two.figures.stiffness == pytest.approx(one.figures.stiffness, rel=1e-6)
+        assert two.pressure_rise == pytest.approx(one.pressure_rise, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "words"),
+    [
+        ({"shape": "cap", "rise_mm": 10.0}, "rise_mm", "take an ellipsoid"),
+        ({"shape": "cap", "rise_mm": 1.0}, "rise_mm", "take a disc"),
+        ({"shape": "cap", "side_mm": 1.0}, "side_mm", "it takes membrane.rise_mm"),
+        ({"rise_mm": 9.0}, "rise_mm", "hemisphere"),
+        ({"shape": "disc", "boss_radius_mm": 2.0}, "boss_height_mm", "boss_height_mm, or neither"),
+        ({"shape": "disc", "boss_radius_mm": 8.0, "boss_height_mm": 1.0}, "boss_radius_mm", "0.25 mm of wall"),
+        ({"shape": "corrugated", "grooves": 3, "rise_mm": 1.0}, "grooves", "thinner wall"),
+        ({"shape": "profile"}, "profile_mm", "needs"),
+        ({"shape": "profile", "profile_mm": [[9.0, 0.0], [0.0, 5.0]]}, "profile_mm", "from 9.25 mm to 0"),
+        (
+            {"shape": "profile", "profile_mm": [[9.25, 0.0], [0.0, 5.0]]},
+            "profile_mm",
+            "not level on the axis, at z = 5",
+        ),
+        (
+            {"shape": "profile", "profile_mm": [[9.25, 0], [9.25, 5], [0, 5]]},
+            "profile_mm",
+            "90 degrees at r = 9.25, z = 5",
+        ),
+        ({"shape": "profile", "profile_mm": [[9.25, 0], [9.25, 5, 6], [0, 5]]}, "profile_mm", "take smaller radii"),
+        (
+            {"shape": "profile", "profile_mm": [[9.25, 0], [9.25, 4, 1], [6, 4, 1], [6, 1, 1], [0, 1]]},
+            "profile_mm",
+            "overlaps itself",
+        ),
+        (
+            {"shape": "profile", "profile_mm": [[9.25, 0], [2, 8, 0.3], [9, 8, 0.3], [4, 2, 0.3], [0, 2]]},
+            "profile_mm",
+            "crosses itself at r = ",
+        ),
+        ({"shape": "profile", "profile_mm": [[9.25, 0, 1, 2], [0, 5]]}, "profile_mm[0]", "a point is [r, z]"),
+    ],
+)
+def test_impossible_shapes_are_refused_with_key_and_place(changes, key, words):
+    with pytest.raises(InputError) as caught:
+        load_scene("paper-dome", {f"membrane.{name}": value for name, value in changes.items()})
+    assert words in str(caught.value) and key in str(caught.value)
