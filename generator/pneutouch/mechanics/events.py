@@ -76,7 +76,7 @@ def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
     return float(a.x + span * share[int(np.argmax(curve >= level))])
 
 
-SWAY, LOBES, NO_LINE = "sway", "lobes", "no line"
+SWAY, LOBES, NO_LINE, ON_FLANGE = "sway", "lobes", "no line", "object on the flange"
 WARNED = (SWAY, LOBES, NO_LINE)
 """Kinds to warn of: the dome leaves its axis, or its round form; no line fits the range, so that it has no figures."""
 

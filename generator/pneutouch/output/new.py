@@ -15,7 +15,8 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.membrane import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.output.files import create_file, replace_file
-from pneutouch.spec.design import DesignFile
+from pneutouch.shape import starting_sizes
+from pneutouch.spec.design import DesignFile, Membrane
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.material import CAST_SEAT, Material
 from pneutouch.spec.printer import Printer, Process
@@ -49,18 +50,28 @@ class NewFile:
 
 
 def new_design(
-    name: str, folder: Path, process: str | None = None, material: str | None = None, changes: Changes | None = None
+    name: str,
+    folder: Path,
+    process: str | None = None,
+    material: str | None = None,
+    changes: Changes | None = None,
+    shape: str | None = None,
 ) -> tuple[Path, str | None]:
     """Write ``folder/name.toml`` with every key, its default or its value in ``changes``, unit, bounds and help; never
     over a file.
 
-    With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
-    returned with the path (else None). Raises InputError if no profile does.
+    With ``shape`` its sizes are written as numbers, in proportion to the inner radius. With ``process`` or
+    ``material`` the design starts with a profile that runs it, and a note that names the profile is returned with
+    the path (else None). Raises InputError if no profile does.
     """
     kept = f"The values are the defaults, except the port: {PRINTED_PORT}, which every printer makes"
     note = f"Every key may be left out. {kept}"
     library, free = Library.default(), process is None and material is None
     values = {"connector": {"port": PRINTED_PORT}} if free else process_values(process, material, library)
+    if shape is not None:
+        radius = float((changes or {}).get("membrane.inner_radius_mm", Membrane().inner_radius_mm))
+        sizes = {f"membrane.{key}": size for key, size in starting_sizes(shape, radius).items()}
+        changes = {"membrane.shape": shape, **sizes, **(changes or {})}
     if changes:
         taken = next((key for key in ("print.profile", "membrane.material") if key in changes and not free), None)
         if taken is not None:

@@ -26,6 +26,7 @@ from pneutouch.report.section import (
     vertical,
 )
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, svg
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 if TYPE_CHECKING:
@@ -65,8 +66,10 @@ class _Section:
         sleeve = mount.sleeve_length if isinstance(mount, Sleeve) else 0.0
         behind = layout.port.length if layout.port_axis is None else 0.0
         self.bottom = min(layout.under - behind, layout.plate_low - sleeve)
+        ring = assembly.scene.seat.ring_thickness if isinstance(assembly.scene.seat, ClampedFlange) else 0.0
+        self.top = max(layout.shape.outer_height, ring)
         self.side = layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0)
-        self.unit = max(layout.plate_radius / 22, (layout.shape.outer_height - self.bottom) / 26)
+        self.unit = max(layout.plate_radius / 22, (self.top - self.bottom) / 26)
         self.left, self.right = -layout.plate_radius - 4 * self.unit, self.side + 4 * self.unit
         self.low = self.bottom - 4 * self.unit
         soft = assembly.scene.printer.accuracy_mm.nominal
@@ -76,13 +79,13 @@ class _Section:
     def draw(self, body: Array | None = None) -> None:
         """Draw the section with its dimensions, and ``body`` as in `section_drawing`."""
         draw_section(self.ax, self.assembly)
-        axis = [self.bottom - 2 * self.unit, self.layout.shape.outer_height + 2 * self.unit]
+        axis = [self.bottom - 2 * self.unit, self.top + 2 * self.unit]
         self.ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
         self._heights()
         self._widths()
         self._leaders()
         xs = (self.left - 21 * self.unit, self.right + 13 * self.unit)
-        high = self.layout.shape.outer_height + 5 * self.unit
+        high = max(self.top + 5 * self.unit, 9 * self.unit)
         if body is not None:
             high += _OBJECT * self.layout.outer_radius
             self._body(body, high)
@@ -97,7 +100,8 @@ class _Section:
     def _heights(self) -> None:
         layout, ax, right, plate = self.layout, self.ax, self.right, self.layout.plate_radius
         top = layout.shape.outer_height
-        vertical(ax, right, 0, top, 0.02 * plate, f"{top:.2f} {self.soft}")
+        if top > layout.wall:
+            vertical(ax, right, 0, top, 0.02 * plate, f"{top:.2f} {self.soft}")
         thick = layout.plate_high - layout.plate_low
         vertical(ax, right, layout.plate_low, layout.plate_high, plate, f"{thick:.2f} {self.rigid}")
         if self.bottom < layout.plate_low:
@@ -118,9 +122,16 @@ class _Section:
     def _leaders(self) -> None:
         layout, unit, ax = self.layout, self.unit, self.ax
         outside, middle = layout.outer_radius + 4.5 * unit, layout.inner_radius + 0.5 * layout.wall
-        note = f"R{layout.inner_radius:g} {self.soft}"
-        leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
-        leader(ax, polar(middle, 55), polar(outside, 55), f"wall {layout.wall:g} {self.soft}", "left")
+        wall = f"wall {layout.wall:g} {self.soft}"
+        if no_hemisphere(layout.shape.plain) is None:
+            note = f"R{layout.inner_radius:g} {self.soft}"
+            leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
+            leader(ax, polar(middle, 55), polar(outside, 55), wall, "left")
+        else:
+            high, (r, z) = self.top + 2.5 * unit, layout.shape.points(np.array([0.3]), np.array([0.5]))[0, 0].tolist()
+            leader(ax, (r, z), (0.7 * layout.outer_radius, high), wall, "left")
+            (r, z), note = layout.shape.inner[0].start, f"inside Ø{2 * layout.inner_radius:g} {self.soft}"
+            leader(ax, (-r, z), (-0.7 * layout.outer_radius, high), f"{note}\n{layout.shape.further}", "right")
         if (fillet := self.assembly.scene.design.membrane.root_fillet_mm) is not None:
             (r, z), text = layout.shape.outer[0].along(np.array([0.5]))[0], f"fillet R{fillet:g}"
             leader(ax, (r, z), polar(outside, 25), text, "left")

@@ -13,6 +13,7 @@ from pneutouch.parts.mould.assembly import SiliconeBatch
 from pneutouch.report.mould import mould_rows
 from pneutouch.report.pages import filled
 from pneutouch.results.printing import JobEstimate
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import ML
 from pneutouch.wording import counted
 
@@ -65,9 +66,11 @@ def part_number(scene: ResolvedDesign) -> str:
 
 def code_fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     """Each field of the part number with its meaning."""
-    membrane = scene.design.membrane
+    membrane, shape = scene.design.membrane, scene.design.membrane.dome
+    named = [(shape.key.upper(), shape.further or "as drawn")] if no_hemisphere(shape.plain) else []
     return [
-        ("PNT", f"pneumatic touch sensor, {membrane.dome.adjective}"),
+        ("PNT", f"pneumatic touch sensor, {shape.adjective}"),
+        *named,
         (f"R{100 * membrane.inner_radius_mm:04.0f}", f"inner radius {membrane.inner_radius_mm:g} mm"),
         (f"T{100 * membrane.wall_thickness_mm:03.0f}", f"wall {membrane.wall_thickness_mm:g} mm"),
         (scene.membrane_material.code, scene.membrane_material.label),

@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
+from pneutouch.errors import InputError, nearest
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import FilletedHemisphere, Hemisphere
 from pneutouch.spec.fields import FieldsError
@@ -43,6 +46,19 @@ def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mappin
         stated = f" = {known[size]:g}" if isinstance(known.get(size), float) else ""
         raise FieldsError(f"{key_of(size)}{stated}: {why}", key_of(size))
     return shape
+
+
+def starting_sizes(key: str, inner_radius: float) -> dict[str, Any]:
+    """Sizes of a new design in a shape, by key, mm: the usual ones, and those without which it would be no example.
+
+    Raises InputError for an unknown shape.
+    """
+    if key not in SHAPES:
+        raise InputError(f"unknown shape.{nearest(key, SHAPES)}", key="shape", value=key)
+    kind = _loaded(SHAPES[key])
+    shares = {**kind.usual, **kind.start}
+    scaled = {key_of(size): (inner_radius * np.array(share)).round(2).tolist() for size, share in shares.items()}
+    return {name: size for name, size in scaled.items() if size != 0.0}
 
 
 def key_of(size: str) -> str:

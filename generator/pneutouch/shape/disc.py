@@ -29,6 +29,7 @@ class Disc(FlatDome):
     boss_height: float = 0.0
     key, adjective = "disc", "flat"
     usual: ClassVar = {"cavity_depth": 0.3}
+    start: ClassVar = {"boss_radius": 0.3, "boss_height": 0.3}
 
     @property
     def line(self) -> tuple[Line, ...]:

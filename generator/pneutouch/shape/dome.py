@@ -3,14 +3,14 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.shape.meridian import Line, Point, Segment
+from pneutouch.shape.meridian import Arc, Line, Point, Segment
 
 INNER_WALL = "inner wall"
 OUTER_WALL = "outer wall"
@@ -25,8 +25,8 @@ class DomeShape(ABC):
     is a chain of pieces from the base to the pole. Pieces with the same index are opposite each other: straight
     lines across the wall connect equal shares of their lengths. A shape with more sizes adds fields for it.
     ``inner_radius`` is the radius of the inner face at the base, ``key`` the name in a design file, ``adjective``
-    the shape in words, ``usual`` further sizes over the inner radius where none are given. The outer face begins in
-    the base plane, the inner one in it or, where the wall leans at its rim, below.
+    the shape in words, ``usual`` further sizes over the inner radius where none are given, ``start`` more for a new
+    design. The outer face begins in the base plane, the inner one in it or, where the wall leans at its rim, below.
     """
 
     inner_radius: float
@@ -34,6 +34,7 @@ class DomeShape(ABC):
     key: ClassVar[str]
     adjective: ClassVar[str]
     usual: ClassVar[Mapping[str, float]] = {}
+    start: ClassVar[Mapping[str, Any]] = {}
 
     @property
     @abstractmethod
@@ -44,6 +45,17 @@ class DomeShape(ABC):
     @abstractmethod
     def outer(self) -> tuple[Segment, ...]:
         """Pieces of the face that is pressed, from base to pole, tagged `OUTER_WALL`."""
+
+    @property
+    def further(self) -> str:
+        """The sizes besides radius and wall in words, such as "rise 4.5 mm"; empty without any."""
+        sizes = [(field.name.replace("_", " "), getattr(self, field.name)) for field in fields(self)[2:]]
+        words = [
+            f"{size} {name}" if isinstance(size, int) else f"{name} {size:g} mm"
+            for name, size in sizes
+            if isinstance(size, int | float) and size
+        ]
+        return ", ".join(words)
 
     @property
     def plain(self) -> "DomeShape":
@@ -84,6 +96,12 @@ class DomeShape(ABC):
     def cavity_volume(self) -> float:
         """Volume under the inner face down to the floor, mm3."""
         return sum(piece.swept() for piece in self.inner) + self.pocket
+
+    @property
+    def domed(self) -> bool:
+        """True if the outer face is curved at its pole and convex, so that an even press touches it in a disc."""
+        turns = [piece.last > piece.first for piece in self.outer if isinstance(piece, Arc)]
+        return isinstance(self.outer[-1], Arc) and all(turns)
 
     @property
     def pocket(self) -> float:

@@ -29,6 +29,7 @@ class Profile(FlatDome):
     profile: tuple[tuple[float, float, float], ...]
     key, adjective = "profile", "free-form"
     usual: ClassVar = {"cavity_depth": 0.0}
+    start: ClassVar = {"profile": [[1.0, 0.0, 0.0], [1.0, 0.45, 0.25], [0.62, 0.8, 1.0], [0.0, 0.8, 0.0]]}
 
     @property
     def line(self) -> tuple[Segment, ...]:

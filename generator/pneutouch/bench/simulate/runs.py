@@ -18,6 +18,7 @@ from pneutouch.bench.simulate.rig import (
     ageing_factor,
     stiffened,
 )
+from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
 from pneutouch.mechanics.response import Figures, figures, lines
@@ -276,6 +277,10 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float)
     return values
 
 
+_LEAST_STEPS = 2
+"""Least number of steps with which a line can be fitted, the first contact being another point."""
+
+
 def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
     """Population around a nominal sensor, pressed at its k-th driving pressure.
 
@@ -283,6 +288,13 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
     own figure over the atlas's, so that they belong to the model behind the records. Where the atlas does not cover the
     sensor or too few specimens, the figures are the nominal sensor's and the only spread is that between runs."""
     sensor, curve = pressed.sensor, pressed.curves[k]
+    if len(truth.protocol("steps", sensor.dome.shape.height, curve.reach).depths) < _LEAST_STEPS:
+        why = "" if curve.ends is None else f" ({curve.ends[0]})"
+        raise InputError(
+            f"driving pressure {curve.driving / KPA:g} kPa: the range ends at {curve.reach:.2f} mm{why}, before "
+            f"{_LEAST_STEPS} steps of the test",
+            remedy="take other driving pressures, or another object",
+        )
     nominal = specimen_figures(curve, truth, sensor.dome.shape.height, rate)
     steps = truth.protocol("steps", sensor.dome.shape.height, curve.reach)
     drawn = _drawn(sensor, curve.driving, steps, truth, seed)

@@ -57,7 +57,7 @@ _ALONG = 33
 
 
 _UPPER = 0.5
-"""Height at rest in R0 above which the inner wall is watched for reaching the base plane."""
+"""Share of the inner wall's height over the floor above which it is watched for reaching the floor."""
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,8 @@ class OffAxisPress:
         self._travel, self._stride = travel, 2 if symmetric else 1
         self._solid, self._free, self._press, self._probe = solid, free, press, probe
         self._gas = shut_in(solid, free, press)
+        floor, pole = solid.mesh.floor / solid.length, float(solid.rest[solid.mesh.inner_apex, 1])
+        self._watched = floor + _UPPER * (pole - floor)
         outline = solid.contact.outline(free.positions / solid.length, _ALONG)
         self.surface = surface.at(first_height(surface, outline))
 
@@ -262,7 +264,7 @@ class OffAxisPress:
             slope=slope,
             stretch=probe.greatest_stretch(x),
             penetration=max(base.penetration, -float(touch.gap.min())) * length,
-            inner_height=model.lowest(x, model.mesh.inner, _UPPER) * length,
+            inner_height=model.lowest(x, model.mesh.inner, self._watched) * length,
             overhang=max(0.0, self._solid.bottom - model.lowest(x, model.mesh.outer)) * length,
             base_force=base.force * mu * length**2,
             positions=x * length,

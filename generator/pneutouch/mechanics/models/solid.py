@@ -282,7 +282,10 @@ def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, free: FreeState, 
     pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
     guides[pressure] = [pressed.solved, *guides.get(pressure, ())[:1]]
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
-    happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
+    happened = sorted(
+        [*reported_events(pressed.events, domed=sensor.dome.shape.domed), *unfitted],
+        key=lambda event: event.indentation,
+    )
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)
     force, rise = curve_between(pressed.path, grid)
@@ -314,9 +317,12 @@ def pressed_columns(pressed: "IndentationPath | OffAxisPath") -> tuple[Array, Ar
     return column("indentation"), column("force"), column("rise"), column("contact_radius"), column("stretch")
 
 
-def reported_events(events: list[SolidEvent]) -> list[Event]:
-    """The solver's events with their reported names, in the order of indentation."""
-    reported = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in events]
+def reported_events(events: list[SolidEvent], *, domed: bool = True) -> list[Event]:
+    """The solver's events with their reported names, in the order of indentation; a face that is not ``domed`` is
+    touched in a ring from the start or soon, which ends no range."""
+    kinds = {"separation": "hollow"} if not domed else {}
+    named = [(*KINDS[kinds.get(e.kind, e.kind)], e) for e in events]
+    reported = [Event(name, max(e.indentation, 0.0), ends, e.detail) for name, ends, e in named]
     return sorted(reported, key=lambda event: event.indentation)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
-from pneutouch.mechanics.events import NO_LINE
+from pneutouch.mechanics.events import NO_LINE, ON_FLANGE
 from pneutouch.mechanics.rating import BUCKLING
 from pneutouch.parts.glue import GLUES, glues_for, surface_of
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
@@ -126,6 +126,20 @@ def _unlined(context: SensorContext) -> list[Finding]:
     for state, event in lost:
         text, at = f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}", (0.0, 0.0, state.apex_outer)
         found.append(Finding("driving", "warning", context.membrane, text, fix, source, at, None))
+    return [*found, *_blocked(context)]
+
+
+def _blocked(context: SensorContext) -> list[Finding]:
+    """Findings on the states at which the object comes down on the flange before the depth of the test."""
+    states, depth, found = context.prediction.all_states, context.sensor.protocol.depth, []
+    for state in states:
+        end = next((event.indentation for event in state.events if event.kind == ON_FLANGE), depth)
+        if end < depth and state.driving_pressure >= 0.0:
+            text = f"pressed from {state.driving_pressure / KPA:.4g} kPa: the object comes down on the flange, or the "
+            text += f"ring on it, at {end:.2f} mm of {depth:.2f} mm"
+            fix = "take a smaller object, a higher driving pressure, a boss on the disc or less indentation.depth_mm"
+            at = (0.0, 0.0, state.apex_outer)
+            found.append(Finding("driving", "warning", context.membrane, text, fix, _SOURCES["flange"], at, None))
     return found
 
 
