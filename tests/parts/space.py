@@ -59,3 +59,25 @@ def measured_volume(assembly, solids=None):
         if top > -1e-6 and max(-x0, -y0, x1, y1) < reach - 1:
             volume += part.volume()
     return volume
+
+
+def measured_gas(assembly):
+    """Volume in mm3 of the whole gas between membrane and the mouth of a port behind; 0 where it leaks."""
+    layout, port = assembly.layout, assembly.layout.port
+    reach, low = layout.plate_radius + 5, layout.under - port.length + _HAIR
+    high = layout.shape.outer_height + layout.wall + 2
+    box = Manifold.cube((2 * reach, 2 * reach, high - low)).translate((-reach, -reach, low))
+    cuts = [manifold(body.vertices, body.triangles) for body in (s.mesh(_FINE) for s in assembly.solids)]
+    if assembly.scene.seat.family == "glued-flange":
+        cuts.append(ring(layout.groove_inner, layout.inner_radius, layout.plate_high, layout.floor))
+        cuts.append(ring(layout.flange_radius, layout.groove_outer, layout.plate_high, 0.0))
+    if port.engaged:
+        frame = Frame((0.0, 0.0, layout.under), (0.0, 0.0, -1.0))
+        cuts.append(ring(port.fitting_bore, port.root - 0.05, port.length - port.engaged, port.length + 1, frame))
+    rest = Manifold.batch_boolean([box, *cuts], OpType.Subtract)
+    boxes = ((part, part.bounding_box()) for part in rest.decompose())
+    return sum(
+        part.volume()
+        for part, (x0, y0, _, x1, y1, top) in boxes
+        if max(-x0, -y0, x1, y1, top + reach - high) < reach - 1
+    )
