@@ -62,6 +62,27 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     assert screen.evaluate(f"{_WALL}.value") == "1.5"
 
 
+def test_a_shape_brings_its_sizes_and_a_dragged_rise_moves_the_figures(screen, command):
+    solved(screen, "#paper-dome")
+    rise = "document.getElementById('field-membrane-rise_mm')"
+    assert screen.evaluate(f"{rise}.closest('.field').hidden")
+    screen.locator("#field-membrane-shape").select_option("disc")
+    until(screen, "document.getElementById('field-membrane-boss_height_mm').value === '2.77'")
+    screen.locator("#field-membrane-shape").select_option("cap")
+    until(screen, f"{rise}.value === '4.63' && !{rise}.closest('.field').hidden")
+    assert screen.evaluate("document.getElementById('field-membrane-boss_height_mm').closest('.field').hidden")
+    until(screen, SOLVED)
+    move(screen, "Rise, mm", 300)
+    until(screen, SOLVED)
+    dragged = screen.evaluate(f"{rise}.value")
+    assert float(dragged) != 4.63
+    changes = ["--set", "membrane.shape=cap", "--set", f"membrane.rise_mm={dragged}"]
+    expected = json.loads(command("predict", "paper-dome", *changes, "--json").stdout)["states"]
+    shown = "[...document.querySelectorAll('#figures table:first-of-type tbody tr')].map(e => e.children[1].textContent.split(' ')[0])"
+    values = json.dumps([f"{state['sensitivity_kPa_per_N']:.4g}" for state in expected])
+    until(screen, f"JSON.stringify({shown}.map(Number)) === JSON.stringify({values}.map(Number))")
+
+
 def test_states_by_injected_gas_stand_in_a_table_and_on_both_branches_of_the_chart(screen, command):
     gas = "#paper-dome&pneumatics.injected_volumes_mL=%5B1%2C%204%2C%207%5D"
     screen.evaluate(f"location.hash = {gas!r}")

@@ -32,8 +32,8 @@ def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mappin
     kind = FilletedHemisphere if key == Hemisphere.key and "root_fillet" in sizes else _loaded(SHAPES[key])
     own = dataclasses.fields(kind)[2:]
     for size in sizes:
-        if size not in [field.name for field in own]:
-            takes = " and ".join(f"membrane.{key_of(field.name)}" for field in own) or "no further size"
+        if size not in own_sizes(kind):
+            takes = " and ".join(f"membrane.{key_of(name)}" for name in own_sizes(kind)) or "no further size"
             raise FieldsError(f'the shape "{key}" has no {key_of(size)}; it takes {takes}', "shape", key_of(size))
     usual = {size: share * inner_radius for size, share in kind.usual.items()}
     known = {**usual, **{name: _fixed(size) for name, size in sizes.items()}}
@@ -48,7 +48,17 @@ def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mappin
     return shape
 
 
-def starting_sizes(key: str, inner_radius: float) -> dict[str, Any]:
+def own_sizes(shape: DomeShape | type[DomeShape]) -> list[str]:
+    """Names of the sizes that a shape has besides radius and wall."""
+    return [field.name for field in dataclasses.fields(shape)[2:]]
+
+
+def sizes_of(key: str) -> list[str]:
+    """Keys in a design file of the sizes that the shape named ``key`` has besides radius and wall."""
+    return [key_of(name) for name in own_sizes(_loaded(SHAPES[key]))]
+
+
+def starting_sizes(key: str, inner_radius: float, digits: int = 2) -> dict[str, Any]:
     """Sizes of a new design in a shape, by key, mm: the usual ones, and those without which it would be no example.
 
     Raises InputError for an unknown shape.
@@ -57,7 +67,7 @@ def starting_sizes(key: str, inner_radius: float) -> dict[str, Any]:
         raise InputError(f"unknown shape.{nearest(key, SHAPES)}", key="shape", value=key)
     kind = _loaded(SHAPES[key])
     shares = {**kind.usual, **kind.start}
-    scaled = {key_of(size): (inner_radius * np.array(share)).round(2).tolist() for size, share in shares.items()}
+    scaled = {key_of(size): (inner_radius * np.array(share)).round(digits).tolist() for size, share in shares.items()}
     return {name: size for name, size in scaled.items() if size != 0.0}
 
 
@@ -79,4 +89,14 @@ def _fixed(size: Any) -> Any:
     return tuple((*point, 0.0)[:3] for point in size) if isinstance(size, list) else size
 
 
-__all__ = ["SHAPES", "DomeShape", "FilletedHemisphere", "Hemisphere", "shape_of"]
+__all__ = [
+    "SHAPES",
+    "DomeShape",
+    "FilletedHemisphere",
+    "Hemisphere",
+    "key_of",
+    "own_sizes",
+    "shape_of",
+    "sizes_of",
+    "starting_sizes",
+]

@@ -24,6 +24,8 @@ from pneutouch.mechanics import SensorState
 from pneutouch.mechanics.models.choice import USUAL, outside
 from pneutouch.parts import Assembly, assemble
 from pneutouch.results.record import plain
+from pneutouch.shape import key_of, own_sizes
+from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.meridian import Meridian
 from pneutouch.studio.form import Question
 from pneutouch.units import KPA
@@ -70,12 +72,13 @@ class PredictedDesign:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NamedDesign(PredictedDesign):
-    """A design by its name, with the values of its file."""
+    """A design by its name, with the values of its file; ``sizes``: those of its shape by ``table.key``."""
 
     name: str
     title: str
     values: Mapping[str, Any]
     depth_mm: float
+    sizes: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,7 +168,12 @@ def _named(kind: Callable[..., Named], source: DesignSource) -> partial[Named]:
     """Maker of an answer of a ``kind``, with name, title, values and depth of its design."""
     file = source.changed({})
     values = file.model_dump(mode="json", by_alias=True)
-    return partial(kind, name=source.name, title=file.document.title, values=values, depth_mm=file.depth_mm)
+    dome = file.membrane.dome
+    found = {f"membrane.{key_of(size)}": getattr(dome, size) for size in own_sizes(dome)}
+    sizes = {key: size for key, size in found.items() if isinstance(size, float | int)}
+    return partial(
+        kind, name=source.name, title=file.document.title, values=values, depth_mm=file.depth_mm, sizes=sizes
+    )
 
 
 def _curves(evaluation: Evaluation) -> PageCurves:
@@ -231,7 +239,8 @@ class DrawnBody:
 
 @dataclass(frozen=True, slots=True)
 class DrawnDesign:
-    """The section through the bodies, with lengths in mm: size in x, y, z; ends in z; diameter of the plate."""
+    """The section through the bodies, with lengths in mm: size in x, y, z; ends in z; diameter of the plate; points
+    (r, z) of the inner face and of the middle of the wall at which their labels point."""
 
     bodies: list[DrawnBody]
     inner_radius_mm: float
@@ -240,6 +249,8 @@ class DrawnDesign:
     size_mm: list[float]
     low_mm: float
     high_mm: float
+    inner_at_mm: list[float]
+    wall_at_mm: list[float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,7 +302,18 @@ def _drawn_design(assembly: Assembly) -> DrawnDesign:
         size_mm=[round(float(value), _DRAWN_DIGITS) for value in high - low],
         low_mm=round(float(low[2]), _DRAWN_DIGITS),
         high_mm=round(float(high[2]), _DRAWN_DIGITS),
+        inner_at_mm=_labelled(layout.shape, _INNER_AT),
+        wall_at_mm=_labelled(layout.shape, _WALL_AT),
     )
+
+
+_INNER_AT, _WALL_AT = (0.6, 0.0), (0.7, 0.5)
+"""Places at which labels point: share of the wall from the rim, and depth in it."""
+
+
+def _labelled(shape: DomeShape, place: tuple[float, float]) -> list[float]:
+    share, depth = place
+    return [round(float(value), _DRAWN_DIGITS) for value in shape.points(np.array([share]), np.array([depth]))[0, 0]]
 
 
 def _bounds(solid: Solid) -> Array:

@@ -20,6 +20,7 @@ from pneutouch.catalogue.library import CachedLibrary, examples
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import check_free, new_changed, write_design
+from pneutouch.shape import SHAPES, sizes_of, starting_sizes
 from pneutouch.spec.contact import SIZES
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
@@ -66,11 +67,12 @@ class FormGroup:
 
 @dataclass(frozen=True, slots=True)
 class DesignForm:
-    """The form of a design: its fields, the size fields of each pressing object, the printers that run each material,
-    and the printers that cast, which need a mould."""
+    """The form of a design: its fields, the size fields of each pressing object, those of each shape with the share of
+    R0 that they begin with, the printers that run each material, and the printers that cast, which need a mould."""
 
     groups: list[FormGroup]
     sizes: dict[str, list[str]]
+    shapes: dict[str, dict[str, Any]]
     printers: dict[str, list[str]]
     castings: list[str]
 
@@ -87,7 +89,15 @@ def design_form(library: Library) -> DesignForm:
     """The form of a design file."""
     sizes = {str(kind): [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
     castings = [name for name, one in library.all("printers", Printer).items() if one.is_casting]
-    return DesignForm(_groups(DesignFile, library), sizes, _printers(library), castings)
+    return DesignForm(_groups(DesignFile, library), sizes, _shapes(), _printers(library), castings)
+
+
+def _shapes() -> dict[str, dict[str, Any]]:
+    """Size fields of every shape, with what they begin with for an inner radius of 1 mm; None: left out at first."""
+    return {
+        shape: {f"membrane.{key}": starting_sizes(shape, 1.0, digits=6).get(key) for key in sizes_of(shape)}
+        for shape in SHAPES
+    }
 
 
 def target_form(library: Library, bases: Mapping[str, str]) -> TargetForm:

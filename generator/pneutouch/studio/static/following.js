@@ -1,4 +1,4 @@
-// What has to change with a field: a resin takes a printer that runs it, an object needs sizes to begin with.
+// What has to change with a field: a resin takes a printer that runs it, an object and a shape need sizes to begin with.
 
 export class Following {
   /** `printers` has by the name of a material those that run it. */
@@ -9,6 +9,7 @@ export class Following {
   /** Changed fields by name that go with the change of one. */
   of(name, text, state, answer) {
     if (name === "membrane.material") return this.printer(text);
+    if (name === "membrane.shape" && answer) return this.shape(text, state, answer);
     return name === "contact.object" && answer ? this.sizes(text, state, answer) : {};
   }
 
@@ -21,6 +22,19 @@ export class Following {
       if (state.values[key] || answer.values[table][field] !== null) continue;
       if (key === "contact.profile_mm") given[key] = `[[0, 0], [${radius}, ${radius / 4}]]`;
       else given[key] = String(Number((begin[key] ?? radius / 2).toPrecision(3)));
+    }
+    return given;
+  }
+
+  /** Sizes of a shape in proportion to the inner radius; those of other shapes are left out. */
+  shape(chosen, state, answer) {
+    const radius = Number(state.values["membrane.inner_radius_mm"] ?? answer.values.membrane.inner_radius_mm);
+    const scaled = (share) => (Array.isArray(share) ? share.map(scaled) : Number((radius * share).toPrecision(3)));
+    const own = this.form.shapes[chosen] ?? {};
+    const given = {};
+    for (const key of [...this.form.ofShapes, "membrane.root_fillet_mm"]) {
+      if (own[key] !== undefined && own[key] !== null) given[key] = JSON.stringify(scaled(own[key]));
+      else if (state.values[key] || answer.values.membrane[key.split(".")[1]] !== undefined) given[key] = null;
     }
     return given;
   }

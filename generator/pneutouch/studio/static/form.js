@@ -3,6 +3,7 @@ import { byId, element, short } from "./dom.js";
 import { asText, Fields, typed, untyped } from "./fields.js";
 
 const MAIN = [
+  "membrane.shape",
   "membrane.inner_radius_mm",
   "membrane.wall_thickness_mm",
   "membrane.material",
@@ -28,10 +29,12 @@ const toPlace = (field, value) => {
 export class Form extends Fields {
   constructor(declared, changed) {
     super(declared.groups, changed);
-    Object.assign(this, { sizes: declared.sizes, castings: declared.castings });
+    Object.assign(this, { sizes: declared.sizes, shapes: declared.shapes, castings: declared.castings });
+    this.ofShapes = [...new Set(Object.values(declared.shapes).flatMap(Object.keys))];
     const measures = [...new Set(Object.values(declared.sizes).flat())].filter((name) => this.fields.has(name));
     const main = [...MAIN];
     main.splice(main.indexOf("contact.object") + 1, 0, ...measures);
+    main.splice(main.indexOf("membrane.wall_thickness_mm") + 1, 0, ...this.ofShapes);
     byId("form").replaceChildren(...this.rows(main));
     byId("form").addEventListener("submit", (event) => event.preventDefault());
     fold();
@@ -39,7 +42,8 @@ export class Form extends Fields {
 
   slides(field) {
     const pressures = field.name === "pneumatics.driving_pressures_kPa";
-    return MAIN.includes(field.name) && field.low !== null && (field.kind === "number" || pressures);
+    const main = MAIN.includes(field.name) || this.ofShapes.includes(field.name);
+    return main && field.low !== null && (field.kind === "number" || pressures);
   }
 
   slider(field, entry) {
@@ -78,6 +82,8 @@ export class Form extends Fields {
       }
       if (slider) slider.setAttribute("aria-valuetext", `${text || input.placeholder || "left out"} ${field.unit}`);
     }
+    const own = Object.keys(this.shapes[this.fields.get("membrane.shape").input.value] ?? {});
+    for (const name of this.ofShapes) this.fields.get(name).row.hidden = !own.includes(name) && !state.values[name];
     const object = this.fields.get("contact.object").input.value;
     for (const [kind, names] of Object.entries(this.sizes)) {
       for (const name of names) if (this.fields.has(name)) this.fields.get(name).row.hidden = kind !== object;
@@ -91,6 +97,7 @@ export class Form extends Fields {
   /** What stands in place of values that are left out. */
   usual(answer) {
     this.fields.get("indentation.depth_mm").input.placeholder = short(answer.depth_mm);
+    for (const name of this.ofShapes) this.fields.get(name).input.placeholder = answer.sizes[name] ? short(answer.sizes[name]) : "";
     const dead = answer.prediction ? short(answer.prediction.dead_volume_mL) : "";
     this.fields.get("pneumatics.dead_volume_mL").input.placeholder = dead;
   }

@@ -29,8 +29,9 @@ function dimension([x0, z0], [x1, z1], tick) {
 function dimensions(drawing, size, tick) {
   const { inner_radius_mm: inner, wall_thickness_mm: wall, low_mm: low, high_mm: high } = drawing;
   const half = drawing.diameter_mm / 2;
-  const at = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
-  const arm = 1.05;
+  const [r, z] = drawing.inner_at_mm;
+  // A hemisphere's radius leads to its face from the middle; the inner radius of another shape is that of its rim.
+  const sphere = Math.abs(Math.hypot(r, z) - inner) < 1e-3 * inner;
   const place = [half + 2.5 * size, high];
   const below = low - 1.6 * size;
   const side = -half - 1.6 * size;
@@ -39,9 +40,11 @@ function dimensions(drawing, size, tick) {
     label(0, below - 1.1 * size, `⌀ ${short(2 * half)}`, size),
     ...dimension([side, low], [side, high], tick),
     label(side - 0.6 * size, 0.5 * (low + high), short(high - low), size, "end"),
-    line([[0, 0], at(inner, 2.2)]),
-    label(...at(0.5 * inner, 2.2).map((value, k) => value + (k ? -0.2 : 0.4) * size), `R0 ${short(inner)}`, size, "start"),
-    line([at(inner + 0.5 * wall, arm), [place[0] - 0.4 * size, place[1]]]),
+    sphere ? line([[0, 0], [-r, z]]) : line([[-r, z], [-0.8 * inner, high + 0.5 * size]]),
+    sphere
+      ? label(-0.5 * r + 0.4 * size, 0.5 * z - 0.2 * size, `R0 ${short(inner)}`, size, "start")
+      : label(-0.8 * inner, high + 0.8 * size, `inside, base R0 ${short(inner)}`, size, "end"),
+    line([drawing.wall_at_mm, [place[0] - 0.4 * size, place[1]]]),
     label(place[0], place[1], `t0 ${short(wall)}`, size, "start"),
     line([[0, low - size], [0, high + size]], "thin axis"),
   ];
