@@ -19,7 +19,8 @@ from pneutouch.schemas import schema_of
 from pneutouch.shape import SHAPES
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
-from pneutouch.spec.design import DesignFile, Membrane
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.membrane_table import Membrane
 from pneutouch.spec.read import validate
 from pneutouch.workflows.build import build
 from tests.shape.shapes import HalfBall, HalfHighCap, LongThimble

@@ -11,7 +11,6 @@ from pneutouch.arrays import Array, hermite
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.shape.dome import DomeShape
-from pneutouch.spec.design import Membrane
 from pneutouch.spec.grade import FROM_CURVE, Grade, MixingCurve, MixingPoint
 from pneutouch.spec.material import (
     STIFFEST_ELASTOMER_MPA,
@@ -22,6 +21,7 @@ from pneutouch.spec.material import (
     density_problem,
     elastomer_modulus_problem,
 )
+from pneutouch.spec.membrane_table import Membrane
 from pneutouch.spec.values import Quantity
 
 

@@ -16,9 +16,10 @@ from pneutouch.mechanics.membrane import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.output.files import create_file, replace_file
 from pneutouch.shape import starting_sizes
-from pneutouch.spec.design import DesignFile, Membrane
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.material import CAST_SEAT, Material
+from pneutouch.spec.membrane_table import Membrane
 from pneutouch.spec.printer import Printer, Process
 from pneutouch.spec.read import Changes, override, read_toml
 from pneutouch.spec.toml_text import design_template

@@ -11,8 +11,8 @@ from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.rating import RATED_SHARE, rated_pressure
 from pneutouch.mechanics.response import Figures
 from pneutouch.selection.problem import SelectionProblem
-from pneutouch.spec.design import Membrane
 from pneutouch.spec.fields import declaration
+from pneutouch.spec.membrane_table import Membrane
 
 
 def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -> Array:

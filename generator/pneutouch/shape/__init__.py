@@ -10,7 +10,6 @@ import numpy as np
 from pneutouch.errors import InputError, nearest
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import FilletedHemisphere, Hemisphere
-from pneutouch.spec.fields import FieldsError
 
 SHAPES: dict[str, str | type[DomeShape]] = {
     "hemisphere": Hemisphere,
@@ -24,27 +23,35 @@ SHAPES: dict[str, str | type[DomeShape]] = {
 """Shapes by their name in a design file: a class, or the file and class of this folder that are loaded on first use."""
 
 
+class ShapeError(ValueError):
+    """Error on sizes of a shape; ``keys`` are theirs in a design file."""
+
+    def __init__(self, problem: str, *keys: str) -> None:
+        super().__init__(problem)
+        self.keys = keys
+
+
 def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mapping[str, Any]) -> DomeShape:
     """The shape named ``key`` with its further sizes by field (mm); those left out are the usual ones.
 
-    Raises FieldsError for a size that the shape does not have, or that makes it impossible.
+    Raises ShapeError for a size that the shape does not have, or that makes it impossible.
     """
     kind = FilletedHemisphere if key == Hemisphere.key and "root_fillet" in sizes else _loaded(SHAPES[key])
     own = dataclasses.fields(kind)[2:]
     for size in sizes:
         if size not in own_sizes(kind):
             takes = " and ".join(f"membrane.{key_of(name)}" for name in own_sizes(kind)) or "no further size"
-            raise FieldsError(f'the shape "{key}" has no {key_of(size)}; it takes {takes}', "shape", key_of(size))
+            raise ShapeError(f'the shape "{key}" has no {key_of(size)}; it takes {takes}', "shape", key_of(size))
     usual = {size: share * inner_radius for size, share in kind.usual.items()}
     known = {**usual, **{name: _fixed(size) for name, size in sizes.items()}}
     for field in own:
         if field.default is dataclasses.MISSING and field.name not in known:
-            raise FieldsError(f'the shape "{key}" needs membrane.{key_of(field.name)}', key_of(field.name))
+            raise ShapeError(f'the shape "{key}" needs membrane.{key_of(field.name)}', key_of(field.name))
     shape = kind(inner_radius, wall_thickness, **known)
     if shape.fault is not None:
         size, why = shape.fault
         stated = f" = {known[size]:g}" if isinstance(known.get(size), float) else ""
-        raise FieldsError(f"{key_of(size)}{stated}: {why}", key_of(size))
+        raise ShapeError(f"{key_of(size)}{stated}: {why}", key_of(size))
     return shape
 
 
@@ -58,7 +65,7 @@ def sizes_of(key: str) -> list[str]:
     return [key_of(name) for name in own_sizes(_loaded(SHAPES[key]))]
 
 
-def starting_sizes(key: str, inner_radius: float, digits: int = 2) -> dict[str, Any]:
+def starting_sizes(key: str, inner_radius: float, digits: int = 2) -> Mapping[str, Any]:
     """Sizes of a new design in a shape, by key, mm: the usual ones, and those without which it would be no example.
 
     Raises InputError for an unknown shape.
@@ -94,6 +101,7 @@ __all__ = [
     "DomeShape",
     "FilletedHemisphere",
     "Hemisphere",
+    "ShapeError",
     "key_of",
     "own_sizes",
     "shape_of",

@@ -16,10 +16,11 @@ from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
 from pneutouch.parts.mould.size import open_mould
 from pneutouch.report.pages import filled
 from pneutouch.spec.coupon import CouponResults
-from pneutouch.spec.design import Membrane, Mould, Print
+from pneutouch.spec.design import Mould, Print
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
+from pneutouch.spec.membrane_table import Membrane
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.toml_text import key_text, value_text
 from pneutouch.wording import counted
