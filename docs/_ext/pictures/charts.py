@@ -10,6 +10,8 @@ from pictures.mixing import CHARTS as MIXING
 from pictures.paper import CHARTS as PAPER
 from pictures.presses import CHARTS as PRESSES
 from pictures.prints import CHARTS as PRINTS
+from pictures.shapes import CHARTS as SHAPES
 from pictures.texture import CHARTS as TEXTURE
 
-CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PAPER, **PRESSES, **PRINTS, **TEXTURE}
+ALL = (ACCURACY, BACKGROUND, MIXING, PAPER, PRESSES, PRINTS, SHAPES, TEXTURE)
+CHARTS: dict[str, Callable[[], str]] = {name: draw for charts in ALL for name, draw in charts.items()}

@@ -22,12 +22,13 @@ def new(
     process: Annotated[str | None, parameter("process")] = None,
     material: Annotated[str | None, parameter("material")] = None,
     shape: Annotated[str | None, parameter("shape")] = None,
+    drawing: Annotated[Path | None, parameter("drawing")] = None,
     out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file, or copy a shipped file."""
-    from pneutouch.output.new import NewFile, change_of_copy, new_design, new_from
+    from pneutouch.output.new import NewFile, change_of_copy, drawn, new_design, new_from
 
-    note, started = None, {"--process": process, "--material": material, "--shape": shape}
+    note, started = None, {"--process": process, "--material": material, "--shape": shape, "--drawing": drawing}
     if from_ is not None:
         given = " and ".join(flag for flag, value in started.items() if value is not None)
         if given:
@@ -35,7 +36,7 @@ def new(
             raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
         made = new_from(from_, name, out, changes(set_))
     elif name is not None:
-        path, note = new_design(name, design_folder(out), process, material, changes(set_), shape)
+        path, note = new_design(name, design_folder(out), process, material, drawn(changes(set_), shape, drawing))
         made = NewFile(path, ("check", name if out is None else str(path)))
     else:
         raise InputError("no name for the new design", remedy="give a name, or an example with `from`")

@@ -51,28 +51,18 @@ class NewFile:
 
 
 def new_design(
-    name: str,
-    folder: Path,
-    process: str | None = None,
-    material: str | None = None,
-    changes: Changes | None = None,
-    shape: str | None = None,
+    name: str, folder: Path, process: str | None = None, material: str | None = None, changes: Changes | None = None
 ) -> tuple[Path, str | None]:
     """Write ``folder/name.toml`` with every key, its default or its value in ``changes``, unit, bounds and help; never
     over a file.
 
-    With ``shape`` its sizes are written as numbers, in proportion to the inner radius. With ``process`` or
-    ``material`` the design starts with a profile that runs it, and a note that names the profile is returned with
-    the path (else None). Raises InputError if no profile does.
+    With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
+    returned with the path (else None). Raises InputError if no profile does.
     """
     kept = f"The values are the defaults, except the port: {PRINTED_PORT}, which every printer makes"
     note = f"Every key may be left out. {kept}"
     library, free = Library.default(), process is None and material is None
     values = {"connector": {"port": PRINTED_PORT}} if free else process_values(process, material, library)
-    if shape is not None:
-        radius = float((changes or {}).get("membrane.inner_radius_mm", Membrane().inner_radius_mm))
-        sizes = {f"membrane.{key}": size for key, size in starting_sizes(shape, radius).items()}
-        changes = {"membrane.shape": shape, **sizes, **(changes or {})}
     if changes:
         taken = next((key for key in ("print.profile", "membrane.material") if key in changes and not free), None)
         if taken is not None:
@@ -88,6 +78,27 @@ def new_design(
         name, folder, design_template(name, values, f"{note}{'' if free else ', and what process and resin need'}.")
     )
     return path, None if free else profile_note(values, library, process=process, material=material)
+
+
+def drawn(changes: Changes | None, shape: str | None, drawing: Path | None) -> Changes | None:
+    """Changes with a shape and its sizes as numbers, in proportion to the inner radius, or with a profile as drawn.
+
+    Raises InputError for a shape beside a drawing, and for those that cannot be read or made.
+    """
+    given = dict(changes or {})
+    if drawing is not None:
+        if shape not in (None, "profile"):
+            raise InputError("a drawing is of the shape profile", key="shape", value=shape, remedy="leave it out")
+        from pneutouch.output.drawn_profile import drawn_profile
+
+        profile = drawn_profile(drawing)
+        as_drawn = {"membrane.inner_radius_mm": profile[0][0], "membrane.profile_mm": profile}
+        return {"membrane.shape": "profile", **as_drawn, **given}
+    if shape is None:
+        return changes
+    radius = float(given.get("membrane.inner_radius_mm", Membrane().inner_radius_mm))
+    sizes = {f"membrane.{key}": size for key, size in starting_sizes(shape, radius).items()}
+    return {"membrane.shape": shape, **sizes, **given}
 
 
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:
