@@ -17,6 +17,7 @@ from pneutouch.parts import assemble
 from pneutouch.printability.measure.mould import cavity_match
 from pneutouch.schemas import schema_of
 from pneutouch.shape import SHAPES
+from pneutouch.shape.cap import Cap
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
 from pneutouch.spec.design import DesignFile
@@ -170,8 +171,24 @@ def test_a_calibration_of_one_shape_is_not_taken_for_another():
         name="x", material="TangoPlus", inner_radius_mm=9.25, wall_thickness_mm=1.5, dead_volume_mL=0.0
     )
     calibration = SensorCalibration.model_construct(design=made)
-    assert calibration.misfit("TangoPlus", 9.25, 1.5, "hemisphere") is None
-    assert "half-ball" in str(calibration.misfit("TangoPlus", 9.25, 1.5, "half-ball"))
+    assert calibration.misfit("TangoPlus", Hemisphere(9.25, 1.5)) is None
+    assert "half-ball" in str(calibration.misfit("TangoPlus", HalfBall(9.25, 1.5)))
+
+
+def test_a_calibration_is_not_taken_for_another_size_of_its_shape():
+    sizes = {"rise_mm": 4.6}
+    made = CalibratedDesign(
+        name="x",
+        material="TangoPlus",
+        inner_radius_mm=9.25,
+        wall_thickness_mm=1.5,
+        dead_volume_mL=0.0,
+        shape="cap",
+        sizes=sizes,
+    )
+    calibration = SensorCalibration.model_construct(design=made)
+    assert calibration.misfit("TangoPlus", Cap(9.25, 1.5, 4.6)) is None
+    assert calibration.misfit("TangoPlus", Cap(9.25, 1.5, 4.7)) is not None
 
 
 @pytest.mark.parametrize("kind", [HalfHighCap, LongThimble])

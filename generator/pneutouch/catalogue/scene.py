@@ -281,14 +281,14 @@ def _check_calibration(scene: ResolvedDesign) -> None:
         raise InputError("the calibration named is not there", file=scene.where, key=CALIBRATION, value=name)
     if calibration is None:
         return
-    why = calibration.misfit(membrane.material, membrane.inner_radius_mm, membrane.wall_thickness_mm, membrane.shape)
+    why = calibration.misfit(membrane.material, membrane.dome)
     if why is not None:
         raise InputError(
             f"the calibration {why}",
             file=scene.where,
             key=CALIBRATION,
             value=name,
-            remedy="calibrate a sensor of this membrane, or take the calibration's resin, radius and wall",
+            remedy="calibrate a sensor of this membrane, or take the calibration's resin and sizes",
         )
 
 

@@ -137,14 +137,15 @@ def calibrated_error(calibration: SensorCalibration) -> SensitivityError | None:
 
 
 def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError if the atlas, with which every fit is made, does not cover the sensor even at a small depth."""
+    """Raise InputError if no fit covers the sensor: not the atlas even at a small depth, nor for another shape than the
+    hemisphere the solid."""
     why = outside_fit(sensor)
     if why is None:
         return
     contact = scene.design.contact
     key = next(iter(contact.off_axis), None if contact.base else "base")
     raise InputError(
-        f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
+        f"no fit covers this sensor: {why}",
         file=scene.where,
         key=None if key is None else f"contact.{key}",
         value=None if key is None else getattr(contact, key),

@@ -60,6 +60,11 @@ def own_sizes(shape: DomeShape | type[DomeShape]) -> list[str]:
     return [field.name for field in dataclasses.fields(shape)[2:]]
 
 
+def stated_sizes(shape: DomeShape) -> dict[str, Any]:
+    """The sizes that a shape has besides radius and wall by their key in a design file; points as lists."""
+    return {key_of(name): _plain(getattr(shape, name)) for name in own_sizes(shape)}
+
+
 def sizes_of(key: str) -> list[str]:
     """Keys in a design file of the sizes that the shape named ``key`` has besides radius and wall."""
     return [key_of(name) for name in own_sizes(_loaded(SHAPES[key]))]
@@ -91,6 +96,10 @@ def _loaded(shape: str | type[DomeShape]) -> type[DomeShape]:
     return kind
 
 
+def _plain(size: Any) -> Any:
+    return [list(point) for point in size] if isinstance(size, tuple) else size
+
+
 def _fixed(size: Any) -> Any:
     """A size as a hashable value; a point without a radius is not rounded."""
     return tuple((*point, 0.0)[:3] for point in size) if isinstance(size, list) else size
@@ -107,4 +116,5 @@ __all__ = [
     "shape_of",
     "sizes_of",
     "starting_sizes",
+    "stated_sizes",
 ]

@@ -1,7 +1,7 @@
 """The calibration file: one sensor's fitted parameters, its model error, and the design that it was made to."""
 
 import math
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,6 +12,9 @@ from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.wording import data_of
+
+if TYPE_CHECKING:
+    from pneutouch.shape.dome import DomeShape
 
 ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction"]
 
@@ -64,6 +67,9 @@ class CalibratedDesign(Table):
     inner_radius_mm: float = Field(ge=1, le=100, description="Inner radius as designed.")
     wall_thickness_mm: float = Field(ge=0.05, le=50, description="Wall as designed.")
     shape: str = Field(default="hemisphere", min_length=1, max_length=100, description="Shape of the dome.")
+    sizes: dict[str, float | list[list[float]]] = Field(
+        default_factory=dict, max_length=10, description="Its sizes besides radius and wall, by key, as designed."
+    )
     dead_volume_mL: float = Field(ge=0, le=1000, description="Dead volume as designed.")
 
 
@@ -186,8 +192,8 @@ class SensorCalibration(Table):
         """Share, 0 to 1, of the first year after printing that was still to come when it was measured."""
         return max(0.0, 1.0 - self.source.age_days / 365.0)
 
-    def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float, shape: str) -> str | None:
-        """Reason why the calibration does not hold for a membrane, or None if it does.
+    def misfit(self, material: object, dome: "DomeShape") -> str | None:
+        """Reason why the calibration does not hold for a membrane of a resin or mix, or None if it does.
 
         Another resin has another modulus. Another shape, radius or wall is another print, whose deviations from its
         drawing are its own, and the model's error was found at this one alone.
@@ -195,15 +201,30 @@ class SensorCalibration(Table):
         made = self.design
         if material != made.material:
             return f"was made with a membrane of {_named(made.material)}, this one is of {_named(material)}"
-        if shape != made.shape:
-            return f"was made with a membrane of the shape {made.shape}, this one is a {shape}"
+        if dome.key != made.shape:
+            return f"was made with a membrane of the shape {made.shape}, this one is a {dome.key}"
         for name, here, there in (
-            ("inner radius", inner_radius_mm, made.inner_radius_mm),
-            ("wall", wall_thickness_mm, made.wall_thickness_mm),
+            ("inner radius", dome.inner_radius, made.inner_radius_mm),
+            ("wall", dome.wall_thickness, made.wall_thickness_mm),
         ):
             if not math.isclose(here, there, rel_tol=_ROUNDING):
                 return f"was made with a membrane of {name} {there:g} mm, this one has {here:g} mm"
-        return None
+        # The shapes load NumPy and the meridian, which reading a file does not need.
+        from pneutouch.shape import stated_sizes
+
+        return _other_size(made.sizes, stated_sizes(dome))
+
+
+def _other_size(made: dict[str, Any], here: dict[str, Any]) -> str | None:
+    """Sentence on the first size that differs from the one ``made``; None if none does."""
+    for key in sorted({*made, *here}):
+        there, now = made.get(key, 0.0), here.get(key, 0.0)
+        points = np.shape(there), np.shape(now)
+        if points[0] != points[1] or not np.allclose(there, now, rtol=_ROUNDING, atol=_ROUNDING):
+            if points == ((), ()):
+                return f"was made with a membrane of {key} = {there:g}, this one has {now:g}"
+            return f"was made with a membrane of other points in {key}"
+    return None
 
 
 def _named(material: object) -> str:

@@ -52,10 +52,10 @@ def test_friction_is_not_fitted_unless_it_is_named(library):
 def test_sensors_differ_by_the_greatest_change_of_modulus_wall_or_gas_volume(library):
     sensor = sensor_of(library)
     cavity = 2 * np.pi / 3 * sensor.dome.inner_radius**3
-    here = FittedContact(sensor, (0.0, GRIPS))
+    here = FittedContact(sensor, (0.0, GRIPS), ())
 
     def other(**changes):
-        return FittedContact(sensor.replace(**changes), (0.0, GRIPS))
+        return FittedContact(sensor.replace(**changes), (0.0, GRIPS), ())
 
     assert here.distance(here) == 0.0
     assert here.distance(other(shear_modulus=1.3 * sensor.wall.shear_modulus)) == pytest.approx(np.log(1.3))

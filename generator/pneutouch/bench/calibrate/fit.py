@@ -5,12 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.bench.calibrate.fitted_atlas import FLOOR, AtlasModel, FittedContact, SharedUnknowns, shared_of, sizes_of
+from pneutouch.bench.calibrate.fitted_atlas import (
+    FLOOR,
+    AtlasModel,
+    FittedContact,
+    SharedUnknowns,
+    model_of,
+    shared_of,
+    sizes_of,
+)
+from pneutouch.bench.calibrate.fitted_solid import SolidModel
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths, information
 from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC, MODULUS, NAMES, CalibrationParameters
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve
 from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.coverage import other_shape
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Sensor
 
@@ -67,9 +77,9 @@ class CalibrationFit:
         """All five coordinates, (5,)."""
         return self.parameters.full(self.solution.at)
 
-    def model_at(self, points: ObservationPoints) -> AtlasModel:
+    def model_at(self, points: ObservationPoints) -> AtlasModel | SolidModel:
         """The fitted model, evaluated at ``points`` in place of the points of the fit."""
-        return AtlasModel(self.sensor, points, self.contact)
+        return model_of(self.sensor, points, self.contact)
 
     @property
     def left_out(self) -> Flags:
@@ -105,7 +115,7 @@ def fit(
     contact = FittedContact.of(sensor, parameters, parameters.full(at))
     # The ratio is centred by rough fits first: where it is off, the residuals show its error and not the runs'.
     for _ in range(_CENTRED):
-        at = _roughly(AtlasModel(sensor, points, contact), parameters, at, floor).at
+        at = _roughly(model_of(sensor, points, contact), parameters, at, floor).at
         if not _moved(contact, nearer := FittedContact.of(sensor, parameters, parameters.full(at))):
             break
         contact = nearer
@@ -123,7 +133,9 @@ def _moved(contact: FittedContact | None, nearer: FittedContact | None) -> bool:
     return contact is not None and nearer is not None and contact.distance(nearer) >= _NEAR
 
 
-def _roughly(model: AtlasModel, parameters: CalibrationParameters, at: Array, floor: Array) -> LeastSquaresSolution:
+def _roughly(
+    model: AtlasModel | SolidModel, parameters: CalibrationParameters, at: Array, floor: Array
+) -> LeastSquaresSolution:
     """A first fit with errors that are shares of full scale, and without shared unknowns."""
     points = model.points
     errors = np.hypot(points.errors, points.full_scale * floor[points.channels])
@@ -140,7 +152,7 @@ def _fit(
     start: Array,
 ) -> CalibrationFit:
     """`fit` with the solid's correction for ``contact`` (None: no correction), from the coordinates ``start``, (k,)."""
-    model = AtlasModel(sensor, points, contact)
+    model = model_of(sensor, points, contact)
     solution = _roughly(model, parameters, start, floor)
     for _ in range(_ROUNDS):
         # A share of the readings would pull the fit below them (Peelle's puzzle); one of the fitted values does not.
@@ -194,11 +206,21 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
     """Start values, (k,): the design's; the modulus raised if the dome would burst at a pressure that was measured."""
     start = parameters.start[list(parameters.fitted)].copy()
     if MODULUS in parameters.fitted and points.driving.size:
-        slices = shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ())
-        least = points.driving.max() / _START_SHARE / float(slices.limit_pressure[0])
+        least = points.driving.max() / _START_SHARE / _limit(sensor)
         where = parameters.fitted.index(MODULUS)
         start[where] = max(start[where], np.log(max(least, 1e-9)))
     return start
+
+
+def _limit(sensor: Sensor) -> float:
+    """Pressure of the limit point over the shear modulus; inf for a dome that has none."""
+    if other_shape(sensor):
+        from pneutouch.mechanics.models.solid import solid_result
+
+        found = solid_result(sensor.replace(waves=0), np.zeros(0)).limits.limit_point
+        return np.inf if found is None else found / sensor.wall.shear_modulus
+    slices = shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ())
+    return float(slices.limit_pressure[0])
 
 
 def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:

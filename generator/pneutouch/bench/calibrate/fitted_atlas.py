@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Flags, Index
+from pneutouch.bench.calibrate.fitted_solid import SolidModel
 from pneutouch.bench.calibrate.observations import ObservationPoints
 from pneutouch.bench.calibrate.parameters import (
     DEAD,
@@ -24,10 +25,11 @@ from pneutouch.bench.calibrate.parameters import (
     CalibrationParameters,
 )
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.coverage import outside_fit, stand_in
+from pneutouch.mechanics.atlas.coverage import other_shape, outside_fit, stand_in
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.corrected.curves import contact_ratio, injection_ratio
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60
@@ -79,10 +81,12 @@ class FittedContact:
     Attributes:
         centre: Sensor for which the solid's ratio is computed.
         frictions: Coefficients of friction at which the solid is solved, ascending.
+        varied: Indices in `NAMES` of the parameters that are fitted or have a prior.
     """
 
     centre: Sensor
     frictions: tuple[float, ...]
+    varied: tuple[int, ...]
 
     @classmethod
     def of(cls, sensor: Sensor, chosen: CalibrationParameters, full: Array) -> "FittedContact | None":
@@ -92,7 +96,10 @@ class FittedContact:
             return None
         modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
         centre = sensor.of_modulus(modulus).replace(wall_thickness=wall, dead_volume=float(full[DEAD]))
-        return cls(centre, chosen.frictions)
+        if other_shape(sensor):
+            grip = float(full[FRICTION])
+            centre = centre.replace(friction=np.inf if grip >= GRIPS else grip)
+        return cls(centre, chosen.frictions, tuple(sorted((*chosen.fitted, *chosen.others))))
 
     @property
     def other_wall(self) -> bool:
@@ -102,11 +109,7 @@ class FittedContact:
     def distance(self, other: "FittedContact") -> float:
         """Distance of two contacts' centres: the greatest change of ln modulus, ln wall and ln gas volume."""
         pairs = [
-            (
-                one.wall.shear_modulus,
-                one.dome.wall_thickness,
-                one.gas.dead_volume + REST_VOLUME * one.dome.inner_radius**3,
-            )
+            (one.wall.shear_modulus, one.dome.wall_thickness, one.gas.dead_volume + one.dome.shape.cavity_volume)
             for one in (self.centre, other.centre)
         ]
         return float(np.abs(np.diff(np.log(pairs), axis=0)).max())
@@ -197,6 +200,13 @@ class AtlasModel:
         ambient = self.sensor.gas.ambient_pressure / mu
         pressure, ok = injected(slices, k, ambient, sets[:, DEAD] / size**3, volume / size**3)
         return pressure * mu[:, None] * np.exp(self._blown), ok
+
+
+def model_of(sensor: Sensor, points: ObservationPoints, contact: FittedContact | None) -> AtlasModel | SolidModel:
+    """The model of a fit at ``points``: the atlas, with a ``contact`` corrected, or for another shape the solid."""
+    if contact is not None and other_shape(sensor):
+        return SolidModel(contact.centre, points, contact.varied)
+    return AtlasModel(sensor, points, contact)
 
 
 FLOOR = np.array([0.01, 0.005, 0.005])

@@ -11,8 +11,10 @@ from pneutouch.bench.calibrate.fitted_atlas import free_pressure, shared_of
 from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.indents import REPETITIONS, SHARE
+from pneutouch.mechanics.atlas.coverage import other_shape
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.membrane import limits
+from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.mechanics.uncertainty.propagate import COUPON
 from pneutouch.units import KPA
@@ -105,7 +107,17 @@ def _estimated(fit: CalibrationFit) -> float:
     """Pressure (MPa) that the estimated sensor is rated for: `RATED_SHARE` of its least limit."""
     full = fit.full
     built = fit.sensor.replace(shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
-    return RATED_SHARE * limits(built).lowest
+    found = _inflated(fit, full).limits if other_shape(fit.sensor) else limits(built)
+    return RATED_SHARE * found.lowest
+
+
+def _inflated(fit: CalibrationFit, full: Array) -> ModelResult:
+    """Inflation of the estimated sensor by the solid."""
+    from pneutouch.mechanics.models.solid import solid_result
+
+    modulus, wall = np.exp(full[[MODULUS, WALL]]).tolist()
+    built = fit.sensor.of_modulus(modulus).replace(wall_thickness=wall, dead_volume=float(full[DEAD]))
+    return solid_result(built.replace(waves=0), np.zeros(0))
 
 
 def _alone(number: int, spread: float) -> Array:
@@ -159,6 +171,12 @@ def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -
 
 def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
     """Volume to inject from ambient to reach a gauge pressure (MPa), mm3."""
+    if other_shape(fit.sensor):
+        curve, ambient = _inflated(fit, full).inflation, fit.sensor.gas.ambient_pressure
+        rising = slice(0, int(curve.pressure.argmax()) + 1)
+        grown = float(np.interp(pressure, curve.pressure[rising], curve.volume[rising]))
+        dead = float(full[DEAD])
+        return float((pressure + ambient) * (grown + dead) / ambient - curve.volume[0] - dead)
     size, mu = fit.sensor.dome.inner_radius, float(np.exp(full[MODULUS]))
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     nodes = np.linspace(0.0, 1.0, 100)

@@ -7,10 +7,10 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.atlas.coverage import is_corrected
+from pneutouch.mechanics.atlas.coverage import is_corrected, other_shape
 from pneutouch.mechanics.atlas.figures import neighbourhood
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
+from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.corrected.curves import NODES
 from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
@@ -48,6 +48,8 @@ FRICTION_PRIOR = GRIPS / np.sqrt(12.0)
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
+_WALLS = 0.5, 2.0
+"""Least and greatest wall over that of the design, for domes that are no hemisphere: our choice."""
 _LARGEST = 1e6
 """Greatest dead volume fitted, mm3: the bound of the design file, 1000 mL."""
 
@@ -122,10 +124,12 @@ def parameters(
     """Parameters of a sensor as designed, with ``names`` fitted. Raises InputError for unknown names."""
     recipe, size, numbers = shipped().recipe, sensor.dome.inner_radius, parse_names(names)
     friction = min(sensor.protocol.friction, GRIPS)
-    rest = REST_VOLUME * size**3
     softest = neighbourhood().recipe.stiffest if is_corrected(sensor) else recipe.stiffest
-    low = [np.log(sensor.gas.ambient_pressure / softest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND, 0.0]
-    high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND, GRIPS]
+    thinnest, thickest = recipe.thinnest * size, recipe.thickest * size
+    if other_shape(sensor):
+        thinnest, thickest = (sensor.dome.wall_thickness * factor for factor in _WALLS)
+    low = [np.log(sensor.gas.ambient_pressure / softest), np.log(thinnest), 0.0, -OFFSET_BOUND, 0.0]
+    high = [np.log(_STIFFEST), np.log(thickest), _LARGEST, OFFSET_BOUND, GRIPS]
     start = [
         np.log(sensor.wall.shear_modulus),
         np.log(sensor.dome.wall_thickness),
@@ -134,7 +138,7 @@ def parameters(
         friction,
     ]
     prior_spread, even, origin = _priors(sensor, material, printer, fitted=FRICTION in numbers)
-    step = np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size, 1e-2])
+    step = np.array([1e-3, 1e-3, 1e-3 * (sensor.dome.shape.cavity_volume + sensor.gas.dead_volume), 1e-3 * size, 1e-2])
     bounds = np.array(start), np.array(low), np.array(high)
     nodes = _frictions(sensor, fitted=FRICTION in numbers)
     return CalibrationParameters(numbers, *bounds, prior_spread, even, step, origin, priors, nodes)

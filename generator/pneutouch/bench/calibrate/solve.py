@@ -10,6 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.fitted_atlas import AtlasModel
+from pneutouch.bench.calibrate.fitted_solid import SolidModel
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 
@@ -53,7 +54,9 @@ class LeastSquaresProblem:
     """Residuals and derivatives; ``errors`` (N,) are the independent standard deviations of the values, ``shared``
     (N, q) the contributions of unknowns of unit variance that act on many values together."""
 
-    def __init__(self, model: AtlasModel, chosen: CalibrationParameters, errors: Array, shared: Array) -> None:
+    def __init__(
+        self, model: AtlasModel | SolidModel, chosen: CalibrationParameters, errors: Array, shared: Array
+    ) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
         self.shared = shared / errors[:, None]
         fitted = list(chosen.fitted)

@@ -91,13 +91,22 @@ _DEPTH = 0.75
 
 def outside_fit(sensor: Sensor) -> str | None:
     """Reason why a sensor cannot be fitted to measured runs; None if it can. A fit uses the atlas to `_DEPTH`, times
-    the solid's ratio to the `stand_in` for a law, grade, softness or contact that the atlas does not cover."""
+    the solid's ratio to the `stand_in` for a law, grade, softness or contact that the atlas does not cover; for another
+    shape than the hemisphere the solid alone."""
+    if other_shape(sensor):
+        held = None if sensor.dome.flange is None else "the flange is held as printed, not the base plane"
+        return sensor.protocol.off_axis or held
     return outside_atlas(stand_in(_shallow(sensor)), wider_box())
 
 
+def other_shape(sensor: Sensor) -> bool:
+    """True if no hemisphere can stand in for the dome in a fit."""
+    return no_hemisphere(sensor.dome.shape.plain) is not None
+
+
 def is_corrected(sensor: Sensor) -> bool:
-    """True if a fit multiplies the atlas by the solid's ratio to the `stand_in`: the atlas does not cover the sensor,
-    or leaves out the ring that its wall meets."""
+    """True if a fit takes the solid, in the atlas's place or for its ratio to the `stand_in`: the atlas does not cover
+    the sensor, or leaves out the ring that its wall meets."""
     return outside_atlas(_shallow(sensor)) is not None or meets_ring(_shallow(sensor))
 
 

@@ -17,7 +17,8 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.coverage import stand_in
 from pneutouch.mechanics.corrected.figures import GRIPS
-from pneutouch.mechanics.sensor import RigidBase, Sensor
+from pneutouch.mechanics.prediction import InflationCurve
+from pneutouch.mechanics.sensor import GasCircuit, RigidBase, Sensor
 from pneutouch.units import KPA
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
@@ -124,11 +125,14 @@ def injection_ratio(sensor: Sensor, volumes: Array) -> Array:
 
 
 def _after_injection(sensor: Sensor, volumes: Array) -> Array:
-    """Pressures (n,; MPa) at which wall and gas are in equilibrium after injected volumes (n,; mm3 at ambient
-    pressure); beyond the end of the inflation that of its end."""
     from pneutouch.mechanics.models.solid import solid_result
 
-    curve, gas = solid_result(sensor.replace(waves=0), np.zeros(0)).inflation, sensor.gas
+    return after_injection(solid_result(sensor.replace(waves=0), np.zeros(0)).inflation, sensor.gas, volumes)
+
+
+def after_injection(curve: InflationCurve, gas: GasCircuit, volumes: Array) -> Array:
+    """Pressures (n,; MPa) at which wall and gas are in equilibrium after injected volumes (n,; mm3 at ambient
+    pressure); beyond the end of the inflation that of its end."""
     content = (curve.volume + gas.dead_volume) * (curve.pressure + gas.ambient_pressure)
     return np.asarray(np.interp(content[0] + gas.ambient_pressure * volumes, content, curve.pressure))
 

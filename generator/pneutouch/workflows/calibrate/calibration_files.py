@@ -19,6 +19,7 @@ from pneutouch.formats import format_of, versioned
 from pneutouch.output.files import check_writable, json_bytes, replace_files, with_manifest, write_folder
 from pneutouch.report.fit_charts import residual_chart
 from pneutouch.results.record import plain
+from pneutouch.shape import stated_sizes
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.design import NO_CALIBRATION
 from pneutouch.spec.read import read_toml
@@ -209,6 +210,7 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
     observations, gap = fitted.observations, calibration.gap
     covered, covariance = _covariance(calibration)
     membrane = design.model_dump(by_alias=True, exclude_none=True)["membrane"]
+    dome, sizes = design.membrane.dome, stated_sizes(design.membrane.dome)
     content = {
         "format": format_of("calibration"),
         "title": f"sensor {calibration.sensor or 'unnamed'}, {calibration.title or 'unnamed campaign'}",
@@ -233,6 +235,8 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
             "material": membrane["material"],
             "inner_radius_mm": float(membrane["inner_radius_mm"]),
             "wall_thickness_mm": float(membrane["wall_thickness_mm"]),
+            "shape": dome.key,
+            **({"sizes": sizes} if sizes else {}),
             "dead_volume_mL": fitted.sensor.gas.dead_volume / ML,
         },
         "parameters": [
