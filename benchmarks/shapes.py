@@ -1,7 +1,8 @@
-"""What each shape of dome does at one footprint: ``python -m benchmarks.shapes`` (two minutes).
+"""What each shape of dome does at one footprint: ``python -m benchmarks.shapes`` (twelve minutes).
 
 Writes docs/background/shapes.json: TangoPlus at 9.25 mm inner radius, each shape as ``new --shape`` starts it, at three
-walls, by the model solid under a plate, and under a ball central and off the axis.
+walls, by the model solid under a plate, and under a ball central and off the axis. Also the best of each shape for
+three targets.
 """
 
 from __future__ import annotations
@@ -9,21 +10,57 @@ from __future__ import annotations
 from typing import Any
 
 from benchmarks.store import LIBRARY, store, timed
+from pneutouch.cli.select import SELECT_FIELDS
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation import evaluate
+from pneutouch.results.record import plain
 from pneutouch.shape import SHAPES, starting_sizes
+from pneutouch.spec.read import validate
+from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.shapes import select_shapes
 
 RADIUS, WALLS = 9.25, (1.0, 1.5, 2.0)
 PRESSURES = (5.0, 15.0)
 BALL, OFFSET = 5.0, 2.0
+TARGETS = (
+    ("Thin and flat, under 6 mm high", "--shape any --sensitivity 2.5 --at 12 --max-height 6 --prefer low"),
+    ("The most travel, at most 25 mm wide", "--shape any --sensitivity 2 --at 0 --max-diameter 25 --prefer travel"),
+    ("Least moved by a small ball", "--shape any --sensitivity 2 --at 12 --max-diameter 25 --prefer ball"),
+)
 FIXED = {"pneumatics.driving_pressures_kPa": list(PRESSURES), "indentation.depth_mm": None}
 
 
 def main() -> None:
     """Measure every shape and store the figures."""
     rows = [shape_row(key, wall) for key in SHAPES for wall in WALLS]
-    store("shapes", {"radius_mm": RADIUS, "ball_mm": BALL, "offset_mm": OFFSET, "rows": rows})
+    found = {"rows": rows, "targets": [target_row(*each) for each in TARGETS]}
+    store("shapes", {"radius_mm": RADIUS, "ball_mm": BALL, "offset_mm": OFFSET, **found})
+
+
+def target_row(title: str, flags: str) -> dict[str, Any]:
+    """The best design of each shape for a target in the options of ``select``."""
+    words = dict(zip(*[iter(flags.split())] * 2, strict=True))
+    tables = {
+        table: {key: value for flag, (place, key, value) in parsed(words).items() if place == table}
+        for table in ("target", "setting", "weights")
+    }
+    found, seconds = timed(lambda: select_shapes(validate(Target, tables, title), title, LIBRARY))
+    designs = [plain(one) for one in found.record.designs]
+    return {"title": title, "flags": flags, "cpu_s": seconds, "designs": designs, "missed": dict(found.missed)}
+
+
+def parsed(words: dict[str, str]) -> dict[str, tuple[str, str, Any]]:
+    """Table, key and value of each option."""
+    fields = {f"--{name.replace('_', '-')}": option for name, option in SELECT_FIELDS.items()}
+    return {
+        flag: (
+            fields[flag].table,
+            fields[flag].key,
+            [text] if flag == "--shape" else text if flag == "--prefer" else float(text),
+        )
+        for flag, text in words.items()
+    }
 
 
 def changes_of(key: str, wall: float) -> dict[str, Any]:

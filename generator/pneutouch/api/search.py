@@ -15,7 +15,14 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import new_changed
-from pneutouch.results.selection import FoundDesign, GradedRecord, ProcessesRecord, SelectionRecord, SingleChange
+from pneutouch.results.selection import (
+    FoundDesign,
+    GradedRecord,
+    ProcessesRecord,
+    SelectionRecord,
+    ShapesRecord,
+    SingleChange,
+)
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
@@ -43,6 +50,8 @@ def unmet_lines(record: SelectedRecord) -> list[str]:
             *(f"{process}: {line}" for process, one in by_process if not one.met for line in unmet_lines(one)),
             *(f"{process}: {why}" for process, why in record.left_out.items()),
         ]
+    if isinstance(record, ShapesRecord):
+        return [f"{name}: {why}" for name, why in {**record.missed, **record.left_out}.items()]
     if isinstance(record, GradedRecord):
         return _of_grade(record)
     lines = [f"rejected: {_size(each.design)}: {each.reason}" for each in record.rejected]
@@ -105,7 +114,7 @@ class GivenBase:
         """The selection, with the design's name as its ``base`` in place of the temporary file."""
         if isinstance(record, ProcessesRecord):
             return replace(record, processes={key: self._renamed(one) for key, one in record.processes.items()})
-        return self._renamed(record)
+        return record if isinstance(record, ShapesRecord) else self._renamed(record)
 
     def _renamed(self, record: _OnBase) -> _OnBase:
         if self._design is None or not self._holds(record.base):
@@ -180,8 +189,9 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
     """Designs for a target: a target file, keyword arguments named as its keys, or both; keywords override the file.
 
     ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. ``base`` may be a `Design`. With
-    ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it. ``have``
-    is what the lab has: a mapping, or the path of a file. Raises InputError naming the keyword.
+    ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it; with
+    ``shapes=["cap", "disc"]`` or ``"any"`` those of each shape. ``have`` is what the lab has: a mapping, or the path of
+    a file. Raises InputError naming the keyword.
     """
     if isinstance(fields.get("have"), str | Path):
         fields["have"] = read_shelf(Path(fields["have"])).model_dump(exclude_none=True)

@@ -41,6 +41,7 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "same_at": _pressures,
     "same_within": partial(percent_of, parameter="same_within"),
     "process": lambda text: words([text]),
+    "shape": lambda text: words([text]),
 }
 
 SELECT_FIELDS = {

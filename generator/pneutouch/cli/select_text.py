@@ -12,6 +12,7 @@ from pneutouch.wording import counted, tenths_below
 from pneutouch.workflows.select.document import (
     Typed,
     graded_missed,
+    grouped,
     headline,
     in_file,
     left_out_lines,
@@ -25,6 +26,7 @@ from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.search import TargetAnswer
 from pneutouch.workflows.select.select import SelectionRun
+from pneutouch.workflows.select.shapes import BALL_MM, ShapeSelection
 
 HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
@@ -35,6 +37,8 @@ def answer_text(answer: TargetAnswer, typed: Typed) -> str:
     """The answer to a target of any kind; ``typed`` writes a field to change as an option."""
     if isinstance(answer.run, ProcessSelection):
         return processes_text(answer.run, typed)
+    if isinstance(answer.run, ShapeSelection):
+        return shapes_text(answer.run)
     if isinstance(answer.run, GradedSelectionRun):
         return graded_text(answer.run)
     return selection_text(answer.run, relief_lines(answer.run, answer.relief, typed))
@@ -128,6 +132,53 @@ def processes_lines(selection: ProcessSelection, typed: Typed = in_file) -> list
             enough = [] if process not in selection.reliefs else relief_lines(run, selection.reliefs[process], typed)
             lines += [f"{process}: {line}" for line in (f"{headline(run)}{why}", *enough, *left_out_lines(run))]
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
+
+
+SHAPE_HEAD = ["", "shape", "resin", "R0 mm", "t0 mm", "other sizes, mm", "high mm", "wide mm", "kPa", "S kPa/N"]
+SHAPE_HEAD += ["N/mm", "range N", "travel mm", "ball reads", "rated kPa"]
+"""Columns of the table of shapes."""
+
+
+def shapes_text(selection: ShapeSelection) -> str:
+    """A row for the best design of each shape, and why others have none."""
+    head, rows = shapes_table(selection)
+    return "\n".join([*([table_text(head, rows), ""] if rows else []), *shapes_lines(selection)])
+
+
+def shapes_table(selection: ShapeSelection) -> tuple[list[str], list[list[str]]]:
+    """The best design of each shape that has one: columns and rows."""
+    rows = []
+    for number, one in enumerate(selection.record.designs, start=1):
+        ball = "no line" if one.ball_sensitivity_ratio is None else f"{100 * (one.ball_sensitivity_ratio - 1):+.0f} %"
+        sizes = ", ".join(f"{key.removesuffix('_mm').replace('_', ' ')} {size:g}" for key, size in one.sizes.items())
+        row = [str(number), one.shape, one.material, f"{one.inner_radius_mm:.2f}", f"{one.wall_thickness_mm:.2f}"]
+        row += [sizes or "-", f"{one.height_mm:.1f}", f"{one.footprint_mm:.1f}", f"{one.driving_pressure_kPa:g}"]
+        row += [f"{one.sensitivity_kPa_per_N:.3f}", f"{one.stiffness_N_per_mm:.3g}", f"0-{one.force_range_end_N:.2f}"]
+        rows.append([*row, f"{one.travel_mm:.2f}", ball, f"{tenths_below(one.rated_pressure_kPa):.1f}"])
+    return SHAPE_HEAD, rows
+
+
+def shapes_lines(selection: ShapeSelection) -> list[str]:
+    """Lines on the figures of the table, the shapes without a design and the resins left out, with the reasons."""
+    first = PREFERRED[selection.target.weights.prefer or "robust"]
+    met = f"{counted(len(selection.designs), 'shape')} of {len(selection.designs) + len(selection.missed)}"
+    lines = [f"{met} with a design that meets the target; first: {first}"]
+    if selection.designs:
+        lines.append(
+            f"every figure is the solid's ({selection.solves} presses); each design passes `check`; "
+            f"ball reads: sensitivity under a ball of {BALL_MM:g} mm radius less that under the plate"
+        )
+    return [*lines, *(f"{name}: {why}" for name, why in selection.missed.items()), *grouped(selection.left_out)]
+
+
+PREFERRED = {
+    "robust": "the least effect of the wall's print error",
+    "travel": "the longest travel",
+    "force": "the greatest force range",
+    "low": "the lowest dome",
+    "ball": "the least effect of a small ball",
+}
+"""Words for the first design, by the target's ``prefer``."""
 
 
 def graded_text(selection: GradedSelectionRun) -> str:

@@ -212,6 +212,56 @@ class ProcessesRecord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeRecord:
+    """The best design of a shape, with the figures of the solid."""
+
+    shape: str
+    """Shape of the dome."""
+    material: str
+    """Resin of the membrane."""
+    inner_radius_mm: float
+    """Inner radius at the base."""
+    wall_thickness_mm: float
+    """Wall."""
+    sizes: Mapping[str, Any]
+    """Sizes that the shape has besides radius and wall, by their key in a design file."""
+    height_mm: float
+    """Height of the unloaded dome over its flange."""
+    footprint_mm: float
+    """Diameter of the whole sensor, a port at its side left out."""
+    driving_pressure_kPa: float
+    """Gauge pressure before contact at which the figures hold."""
+    rated_pressure_kPa: float
+    """Greatest driving pressure to be used."""
+    sensitivity_kPa_per_N: float
+    """Slope of the pressure rise over the contact force, first contact to range end."""
+    stiffness_N_per_mm: float
+    """Mean stiffness over the range."""
+    force_range_end_N: float
+    """Contact force at the end of the range."""
+    travel_mm: float
+    """Travel of the plate from first contact to the end of the range."""
+    ball_sensitivity_ratio: float | None
+    """Sensitivity under a ball of 5 mm radius over that under the plate; null: no straight line explains it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShapesRecord:
+    """The best design of each shape for one target, best first."""
+
+    met: bool
+    """True if a shape meets the target."""
+    designs: tuple[ShapeRecord, ...]
+    """The best design of each shape."""
+    missed: Mapping[str, str]
+    """Shapes without a design, and the reasons."""
+    left_out: Mapping[str, str]
+    """Resins left out, and the reasons."""
+    solves: int
+    """Number of presses that the solid solved."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class GradeFigures:
     """Figures of a membrane at the driving pressures of the target."""
 

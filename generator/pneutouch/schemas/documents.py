@@ -19,7 +19,7 @@ from pneutouch.formats import FORMATS, KEY, format_of
 from pneutouch.results.behaviour import CalibratedBy
 from pneutouch.results.plan import PlannedCampaign
 from pneutouch.results.prediction import PredictionRecord
-from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord, ShapesRecord
 from pneutouch.schemas.pieces import (
     NUMBER,
     NUMBERS,
@@ -203,7 +203,7 @@ def selection() -> Schema:
     of_base = {"target": _target(), "contact": contact(notes=True)}
     kinds = ("SelectionRecord", "ProcessRecord", "GradedRecord")
     instead = {f"{kind}.{key}": schema for kind in kinds for key, schema in of_base.items()}
-    made = [_of_record(kind, instead) for kind in (SelectionRecord, GradedRecord, ProcessesRecord)]
+    made = [_of_record(kind, instead) for kind in (SelectionRecord, GradedRecord, ProcessesRecord, ShapesRecord)]
     return {"anyOf": [_saved(schema) for schema in made], "description": "Designs for a target."}
 
 

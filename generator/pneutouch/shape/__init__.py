@@ -60,7 +60,7 @@ def own_sizes(shape: DomeShape | type[DomeShape]) -> list[str]:
     return [field.name for field in dataclasses.fields(shape)[2:]]
 
 
-def stated_sizes(shape: DomeShape) -> dict[str, Any]:
+def stated_sizes(shape: DomeShape) -> Mapping[str, Any]:
     """The sizes that a shape has besides radius and wall by their key in a design file; points as lists."""
     return {key_of(name): _plain(getattr(shape, name)) for name in own_sizes(shape)}
 

@@ -1,6 +1,7 @@
 """The calibration file: one sensor's fitted parameters, its model error, and the design that it was made to."""
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -215,7 +216,7 @@ class SensorCalibration(Table):
         return _other_size(made.sizes, stated_sizes(dome))
 
 
-def _other_size(made: dict[str, Any], here: dict[str, Any]) -> str | None:
+def _other_size(made: Mapping[str, Any], here: Mapping[str, Any]) -> str | None:
     """Sentence on the first size that differs from the one ``made``; None if none does."""
     for key in sorted({*made, *here}):
         there, now = made.get(key, 0.0), here.get(key, 0.0)

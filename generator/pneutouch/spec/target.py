@@ -51,6 +51,13 @@ class TargetFigures(Table):
         high=400,
         help="Greatest diameter of the whole sensor: membrane, flange and connector, a port at its side left out.",
     )
+    max_height_mm: float | None = number(
+        None,
+        unit="mm",
+        low=0.2,
+        high=300,
+        help="Greatest height of the dome over its flange; for a search over shapes.",
+    )
     fits: str | None = Field(
         default=None,
         pattern=r"^finger:[0-9]+(\.[0-9]+)?$",
@@ -172,7 +179,7 @@ class Given(Table):
 class Setting(SparseTable):
     """[setting]: the design that gives everything else: connector, tube, plate, ambient pressure, printer."""
 
-    left_out = ("gauge", "processes")
+    left_out = ("gauge", "processes", "shapes")
 
     base: str | None = name(
         None, registry="designs", help="Name or path of a design; left out: defaults, port push-in-4."
@@ -197,7 +204,12 @@ class Setting(SparseTable):
         help="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
     )
 
-    @field_validator("processes", mode="before")
+    shapes: Names | None = Field(
+        default=None,
+        description="Search these shapes by the solid and show the best of each, such as cap,disc; any: of all.",
+    )
+
+    @field_validator("processes", "shapes", mode="before")
     @classmethod
     def _listed(cls, given: Any) -> Any:
         return [given] if isinstance(given, str) else given
@@ -217,8 +229,10 @@ class Setting(SparseTable):
         return self
 
 
-class Weights(Table):
+class Weights(SparseTable):
     """[weights]: the preferences between designs that all meet the target."""
+
+    left_out = ("prefer",)
 
     robustness: float = number(1.0, unit="", low=0, high=100, help="Weight on a small uncertainty of the sensitivity.")
     tunability: float = number(
@@ -228,6 +242,12 @@ class Weights(Table):
         default=False,
         description="Count an unknown object and place of contact in that uncertainty: the design whose reading they "
         "move least comes first.",
+    )
+    prefer: Literal["robust", "travel", "force", "low", "ball"] | None = Field(
+        default=None,
+        description="What comes first in a search over shapes: a sensitivity that the wall's print error moves least "
+        "(the default), the longest travel, the greatest force range, the lowest dome, or the one that reads a small "
+        "ball most like a plate.",
     )
 
 
@@ -295,6 +315,31 @@ class Target(SparseTable):
                 "setting.processes",
                 mixed,
             )
+        return self
+
+    @model_validator(mode="after")
+    def _shapes_and_what_goes_with_them(self) -> "Target":
+        only: dict[str, Any] = {
+            "target.max_height_mm": self.target.max_height_mm,
+            "weights.prefer": self.weights.prefer,
+        }
+        if self.setting.shapes is None:
+            for key, value in only.items():
+                if value is not None:
+                    raise FieldsError(f"{key} is for a search over shapes; give setting.shapes too", key)
+            return self
+        others: dict[str, Any] = {
+            "setting.processes": self.setting.processes,
+            "given.graded": self.given.graded or None,
+            "given.mix": self.given.mix,
+            "weights.contact_anywhere": self.weights.contact_anywhere or None,
+            "setting.gauge": "any" if self.setting.gauge == "any" else None,
+        }
+        for key, value in others.items():
+            if value is not None:
+                raise FieldsError(
+                    f"a search over setting.shapes does not take {key}; leave one out", "setting.shapes", key
+                )
         return self
 
     @model_validator(mode="after")

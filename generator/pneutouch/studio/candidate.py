@@ -12,6 +12,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.cli.select import saving_command
 from pneutouch.errors import InputError
 from pneutouch.output.new import free_name
+from pneutouch.results.selection import ShapeRecord
 from pneutouch.selection import Candidate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
@@ -81,6 +82,33 @@ def grade_figures(selection: GradedSelectionRun) -> CandidateFigures:
         rows.append(("Rated pressure", f"{tenths_below(best.rated / KPA):.1f} kPa", ""))
     title = selection.grade.label
     return CandidateFigures(1 if selection.passes else None, title, title, None, tuple(rows))
+
+
+def shape_figures(found: ShapeRecord, rank: int) -> CandidateFigures:
+    """Figures of the best design of a shape, of a rank from 1; it has no place on a chart."""
+    ball = found.ball_sensitivity_ratio
+    sizes = [
+        (key.removesuffix("_mm").replace("_", " ").capitalize(), f"{size:g} mm", "")
+        for key, size in found.sizes.items()
+    ]
+    rows: list[FigureRow] = [
+        ("Sensitivity", f"{found.sensitivity_kPa_per_N:.3f} kPa/N", "by the solid"),
+        ("Driving pressure", f"{found.driving_pressure_kPa:g} kPa", "gauge, before contact"),
+        ("Force range", f"0 to {found.force_range_end_N:.2f} N", f"travel {found.travel_mm:.2f} mm"),
+        ("Stiffness", f"{found.stiffness_N_per_mm:.3g} N/mm", ""),
+        (
+            "Under a small ball",
+            "no straight line" if ball is None else f"{100 * (ball - 1):+.0f} %",
+            "of the sensitivity",
+        ),
+        ("Inner radius R0", f"{found.inner_radius_mm:g} mm", ""),
+        ("Wall t0", f"{found.wall_thickness_mm:g} mm", ""),
+        *sizes,
+        ("Height", f"{found.height_mm:.1f} mm", "of the dome over its flange"),
+        ("Diameter", f"{found.footprint_mm:.1f} mm", "of the whole sensor"),
+        ("Rated pressure", f"{tenths_below(found.rated_pressure_kPa):.1f} kPa", ""),
+    ]
+    return CandidateFigures(rank, found.material, f"{found.shape}, {found.material}", None, tuple(rows))
 
 
 def _figures(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:

@@ -13,14 +13,21 @@ from typing import Any
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.cli.select import typed
-from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
+from pneutouch.cli.select_text import (
+    graded_lines,
+    graded_table,
+    processes_lines,
+    processes_table,
+    shapes_lines,
+    shapes_table,
+)
 from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.results.record import extended, plain
 from pneutouch.selection import Candidate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.target import Target
-from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
+from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures, shape_figures
 from pneutouch.studio.form import PAGE, Question
 from pneutouch.studio.job import Report
 from pneutouch.wording import rounded
@@ -31,6 +38,7 @@ from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.search import TargetAnswer
 from pneutouch.workflows.select.search import search as answer
 from pneutouch.workflows.select.select import STEPS, SelectionRun
+from pneutouch.workflows.select.shapes import ShapeSelection
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +121,27 @@ def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | Non
     )
 
 
+def _by_shape(selection: ShapeSelection, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
+    """The best design of each shape as a card, and their table."""
+    found = zip(selection.designs, selection.record.designs, strict=True)
+    cards = [
+        extended(
+            CandidateCard,
+            shape_figures(record, rank),
+            kind="process",
+            label=record.shape,
+            note="",
+            passes=True,
+            state=page.state(selection.base, one.assignments),
+            command=page.command(rank),
+        )
+        for rank, (one, record) in enumerate(found, start=1)
+    ]
+    (line, *remarks), (head, rows) = shapes_lines(selection), shapes_table(selection)
+    table = PageTable("The best design of each shape", head, rows) if rows else None
+    return PageSelection(document, line, [], cards, remarks, None, table)
+
+
 _CHANGES = "setting.assignments"
 
 
@@ -153,7 +182,7 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
     with at_its_fields():
         target = target_of(question, bases)
         page = CandidateStates(question, bases, library, target)
-        charted = target.setting.processes is None and not target.given.graded
+        charted = target.setting.processes is target.setting.shapes is None and not target.given.graded
         steps = len(STEPS) + 1
 
         def progress(done: int, total: int, step: str) -> None:
@@ -163,6 +192,8 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         run, document = found.run, {**plain(found.record), "written": None}
         if isinstance(run, ProcessSelection):
             return _by_process(run, document, page)
+        if isinstance(run, ShapeSelection):
+            return _by_shape(run, document, page)
         if isinstance(run, GradedSelectionRun):
             return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate.fit import fit
-from pneutouch.bench.calibrate.fitted_solid import SolidModel
+from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.observations import Injection, Observations, points_of
 from pneutouch.bench.calibrate.other_states import further_tests
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, WALL, parameters
@@ -57,7 +57,7 @@ def test_the_expansion_holds_off_its_centre_and_is_exact_at_it(scene):
         full = np.zeros(5)
         full[[MODULUS, WALL]] = np.log([measured.wall.shear_modulus, measured.dome.wall_thickness])
         full[DEAD] = measured.gas.dead_volume
-        values, ok = SolidModel(sensor, points, (MODULUS, WALL, DEAD)).values(full[None])
+        values, ok = SolidExpansion(sensor, points, (MODULUS, WALL, DEAD)).values(full[None])
         assert ok.all()
         assert (np.abs(values[0] - points.values) / points.full_scale).max() < within
 

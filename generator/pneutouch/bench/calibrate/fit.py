@@ -14,7 +14,7 @@ from pneutouch.bench.calibrate.fitted_atlas import (
     shared_of,
     sizes_of,
 )
-from pneutouch.bench.calibrate.fitted_solid import SolidModel
+from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths, information
 from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC, MODULUS, NAMES, CalibrationParameters
@@ -77,7 +77,7 @@ class CalibrationFit:
         """All five coordinates, (5,)."""
         return self.parameters.full(self.solution.at)
 
-    def model_at(self, points: ObservationPoints) -> AtlasModel | SolidModel:
+    def model_at(self, points: ObservationPoints) -> AtlasModel | SolidExpansion:
         """The fitted model, evaluated at ``points`` in place of the points of the fit."""
         return model_of(self.sensor, points, self.contact)
 
@@ -134,7 +134,7 @@ def _moved(contact: FittedContact | None, nearer: FittedContact | None) -> bool:
 
 
 def _roughly(
-    model: AtlasModel | SolidModel, parameters: CalibrationParameters, at: Array, floor: Array
+    model: AtlasModel | SolidExpansion, parameters: CalibrationParameters, at: Array, floor: Array
 ) -> LeastSquaresSolution:
     """A first fit with errors that are shares of full scale, and without shared unknowns."""
     points = model.points

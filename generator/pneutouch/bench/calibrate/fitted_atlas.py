@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.bench.calibrate.fitted_solid import SolidModel
+from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.observations import ObservationPoints
 from pneutouch.bench.calibrate.parameters import (
     DEAD,
@@ -202,10 +202,10 @@ class AtlasModel:
         return pressure * mu[:, None] * np.exp(self._blown), ok
 
 
-def model_of(sensor: Sensor, points: ObservationPoints, contact: FittedContact | None) -> AtlasModel | SolidModel:
+def model_of(sensor: Sensor, points: ObservationPoints, contact: FittedContact | None) -> AtlasModel | SolidExpansion:
     """The model of a fit at ``points``: the atlas, with a ``contact`` corrected, or for another shape the solid."""
     if contact is not None and other_shape(sensor):
-        return SolidModel(contact.centre, points, contact.varied)
+        return SolidExpansion(contact.centre, points, contact.varied)
     return AtlasModel(sensor, points, contact)
 
 

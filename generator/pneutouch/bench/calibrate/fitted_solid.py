@@ -59,7 +59,7 @@ class SolvedPresses:
         return np.array([np.interp(share, self.travel, logs[row]) for logs in self.logs])
 
 
-class SolidModel:
+class SolidExpansion:
     """The solid's expansion around ``centre`` at ``points``, with the interface of `fitted_atlas.AtlasModel`.
 
     ``varied`` are the parameters (indices in `NAMES`) that may change. Raises ComputationError where the solid cannot

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.fitted_atlas import AtlasModel
-from pneutouch.bench.calibrate.fitted_solid import SolidModel
+from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 
@@ -55,7 +55,7 @@ class LeastSquaresProblem:
     (N, q) the contributions of unknowns of unit variance that act on many values together."""
 
     def __init__(
-        self, model: AtlasModel | SolidModel, chosen: CalibrationParameters, errors: Array, shared: Array
+        self, model: AtlasModel | SolidExpansion, chosen: CalibrationParameters, errors: Array, shared: Array
     ) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
         self.shared = shared / errors[:, None]

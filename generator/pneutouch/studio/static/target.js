@@ -13,6 +13,7 @@ const MAIN = [
   "target.max_diameter_mm",
   "target.fits",
   "setting.processes",
+  "setting.shapes",
   "setting.profile",
   "setting.base",
 ];

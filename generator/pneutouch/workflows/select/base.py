@@ -169,7 +169,8 @@ def _base_scene(target: Target, where: str, library: Library, source: DesignSour
         if error.file is None and error.key not in chosen:
             error.file = where
         raise
-    check_shape(scene)
+    if target.setting.shapes is None:
+        check_shape(scene)
     check_central(scene)
     return scene
 

@@ -278,12 +278,16 @@ def left_out_lines(selection: SelectionRun) -> list[str]:
     """Lines on the resins left out, and on the walls searched if no design was found."""
     box = selection.problem.recipe
     walls = f"searched: walls of {box.thinnest:g} to {box.thickest:g} R0, which the atlas covers"
-    left = selection.left_out
-    lines = [
+    lines = grouped(selection.left_out)
+    return lines if selection.answer.designs or not selection.problem.resins else [*lines, walls]
+
+
+def grouped(left: Mapping[str, str]) -> list[str]:
+    """Lines on what was left out, by name, those with one reason together."""
+    return [
         f"left out: {', '.join(name for name in left if left[name] == why)}: {why}"
         for why in dict.fromkeys(left.values())
     ]
-    return lines if selection.answer.designs or not selection.problem.resins else [*lines, walls]
 
 
 def mount_note(target: Target, base: ResolvedDesign) -> list[str]:

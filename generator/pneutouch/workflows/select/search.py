@@ -1,5 +1,5 @@
 """Answer to a target of any kind: ranked designs, with a gauge chosen if it is left open, a grade, or the best of each
-process.
+process or shape.
 
 For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough."""
 
@@ -13,7 +13,7 @@ from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.mechanics.gauge_reading import gauge_reading
-from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord, ShapesRecord
 from pneutouch.selection import Candidate
 from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import Gauge
@@ -24,14 +24,15 @@ from pneutouch.workflows.select.document import Relief, WorkingChange, graded, r
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
 from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
+from pneutouch.workflows.select.shapes import ShapeSelection, select_shapes
 
-SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
+SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord | ShapesRecord
 """Record that ``select`` prints, by the kind of its target."""
 
 
 @dataclass(frozen=True)
 class FoundChoice:
-    """A design that meets a target: its rank or process, its base, and the assignments that turn the base into it."""
+    """A design that meets a target: its rank, process or shape, its base, and the changes that make the base it."""
 
     label: str
     base: ResolvedDesign
@@ -47,7 +48,7 @@ class TargetAnswer:
     """An answer: its record; the designs that meet the target, best first; why ``check`` rejects a grade that meets it;
     without designs of a single process, what makes one possible."""
 
-    run: SelectionRun | GradedSelectionRun | ProcessSelection
+    run: SelectionRun | GradedSelectionRun | ProcessSelection | ShapeSelection
     record: SelectedRecord
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
@@ -79,6 +80,10 @@ def search(
             over = replace(over, reliefs={name: relief_of(run, target, known) for name, run in over.runs.items()})
         rows = tuple(FoundChoice(name, run.base, run.assignments(run.answer.designs[0])) for name, run in over.best)
         return TargetAnswer(over, over.record, rows)
+    if target.setting.shapes is not None:
+        shaped = select_shapes(target, where, library, progress=progress)
+        best_of = tuple(FoundChoice(one.trial.shape, shaped.base, one.assignments) for one in shaped.designs)
+        return TargetAnswer(shaped, shaped.record, best_of)
     if target.given.graded:
         grade = select_graded(
             target, where, library, lambda trial, done, most: progress(done, most, "searching grades")

@@ -56,7 +56,7 @@ from pneutouch.workflows.select.checks import (
 _CONFIRMED = 3
 """Number of designs that the solid confirms."""
 _NOTHING = SelectionResult([], None, [], 0)
-_PLATE_SHARE = 1.6
+PLATE_SHARE = 1.6
 """Radius of the plate over R0 if no base gives one: the contact of an inflated dome grows past R0."""
 
 
@@ -172,7 +172,7 @@ def found(
     sensor = base_sensor(scene)
     pair = requested_pair(target, where, scene.printer, library)
     if pair is None:
-        resins, left_out = _resins(target, where, scene, sensor, library)
+        resins, left_out = resins_of(target, where, scene, sensor, library)
     else:
         resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure)
     problem = problem_of(target, scene, sensor, resins)
@@ -232,7 +232,7 @@ def grade_text(grade: Grade) -> str:
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
-def _resins(
+def resins_of(
     target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
 ) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
     """Resins that the printer runs and the atlas covers, and the reasons, by name, for others of its process left
@@ -289,7 +289,7 @@ def problem_of(
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
         steps=sensor.protocol.steps,
         atlas=_atlas(scene),
-        plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
+        plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else PLATE_SHARE,
         max_footprint=required.max_footprint_mm,
         connector=connector_fit(scene),
         anywhere=target.weights.contact_anywhere,

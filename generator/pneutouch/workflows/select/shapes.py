@@ -1,0 +1,400 @@
+"""Selection over shapes of the dome: for each shape, by the solid, the design that meets a target best.
+
+Each shape is tried in a few proportions, at a few radii, in every resin; the wall (or, where it is given, the radius)
+is solved for. What is found passes the whole ``check``.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import CachedLibrary
+from pneutouch.errors import ComputationError, InputError, nearest
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics.models.solid import solid_states
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.response import Figures
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.parts import assemble
+from pneutouch.results.selection import ShapeRecord, ShapesRecord
+from pneutouch.selection import CandidateResin
+from pneutouch.shape import SHAPES, key_of, shape_of, stated_sizes
+from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import value_text
+from pneutouch.units import KPA
+from pneutouch.workflows.select.base import ANY, base_scene, setting_changes
+from pneutouch.workflows.select.checks import base_sensor, connector_fit, judge, source_of
+from pneutouch.workflows.select.select import PLATE_SHARE, resins_of
+
+VARIANTS: dict[str, tuple[dict[str, float], ...]] = {
+    "hemisphere": ({},),
+    "cap": ({"rise": 0.35}, {"rise": 0.5}, {"rise": 0.7}),
+    "ellipsoid": ({"rise": 0.6}, {"rise": 1.4}),
+    "thimble": ({"side": 0.5, "rise": 1.0}, {"side": 1.0, "rise": 1.0}),
+    "disc": ({}, {"boss_radius": 0.35, "boss_height": 0.2}),
+    "corrugated": ({"rise": 0.1},),
+}
+"""Sizes over the inner radius in which each shape is tried: our choice; a profile has no proportions to try."""
+
+BALL_MM = 5.0
+"""Radius of the small ball whose reading is set beside the plate's."""
+
+_RADII = (1.0, 0.75)
+"""Inner radii tried, over the greatest that the limits of the target leave: our choice."""
+
+_WALL_SHARE, _DRAWN_SHARE, _THICKEST = 0.16, 0.2, 0.4
+"""Wall over the inner radius: at which a search begins, for which the outer sizes are drawn, and the greatest."""
+
+_SOLVES = 7
+_MET = 0.3
+"""Most solves for one wall; share of the tolerance within which a wall is taken: our choice."""
+
+_JUDGED = 3
+"""Designs of a shape that are checked, best first, until one passes."""
+
+_SHORTEST = 0.1
+"""Least range of a design over the depth of its test: our choice; where a plate soon lies on the flange it is less."""
+
+_STEP = 0.01
+"""Radii and walls are multiples of this, mm."""
+
+
+@dataclass(frozen=True)
+class ShapeTrial:
+    """A design that was pressed by the solid: its changes to the base, by ``table.key``, sensor and state; and the slope
+    of its ln sensitivity by ln wall, NaN from a single solve."""
+
+    shape: str
+    resin: CandidateResin
+    changes: Mapping[str, Any]
+    sensor: Sensor
+    state: SensorState
+    footprint: float
+    slope: float = float("nan")
+
+    @property
+    def figures(self) -> Figures[float]:
+        """Figures of its press."""
+        assert self.state.figures is not None
+        return self.state.figures
+
+
+@dataclass(frozen=True)
+class ShapeDesign:
+    """The best design of a shape: its trial, its rated pressure (MPa), and its sensitivity under the small ball over
+    that under the plate; None where no straight line explains it."""
+
+    trial: ShapeTrial
+    rated: float
+    ball: float | None
+
+    @property
+    def assignments(self) -> list[str]:
+        """Changes that turn the base into the design, as ``table.key=value``."""
+        return _texts(self.trial.changes)
+
+    @property
+    def record(self) -> ShapeRecord:
+        """The design as ``select`` prints it."""
+        trial, figures = self.trial, self.trial.figures
+        dome = trial.sensor.dome
+        return ShapeRecord(
+            shape=dome.shape.key,
+            material=trial.resin.name,
+            inner_radius_mm=dome.inner_radius,
+            wall_thickness_mm=dome.wall_thickness,
+            sizes={key: size for key, size in stated_sizes(dome.shape).items() if size},
+            height_mm=trial.sensor.dome.shape.outer_height,
+            footprint_mm=trial.footprint,
+            driving_pressure_kPa=trial.state.driving_pressure / KPA,
+            rated_pressure_kPa=self.rated / KPA,
+            sensitivity_kPa_per_N=figures.sensitivity,
+            stiffness_N_per_mm=figures.stiffness,
+            force_range_end_N=figures.force_high,
+            travel_mm=trial.state.range_end,
+            ball_sensitivity_ratio=self.ball,
+        )
+
+
+@dataclass(frozen=True)
+class ShapeSelection:
+    """The best design of each shape, best first; why others have none; resins left out; presses solved."""
+
+    target: Target
+    base: ResolvedDesign
+    designs: tuple[ShapeDesign, ...]
+    missed: Mapping[str, str]
+    left_out: Mapping[str, str]
+    solves: int
+
+    @property
+    def record(self) -> ShapesRecord:
+        """The selection as ``select`` prints it."""
+        rows = tuple(one.record for one in self.designs)
+        return ShapesRecord(bool(rows), rows, dict(self.missed), dict(self.left_out), self.solves)
+
+
+def select_shapes(
+    target: Target,
+    where: str,
+    library: Library | None = None,
+    *,
+    progress: Callable[[int, int, str], None] = lambda done, total, step: None,
+) -> ShapeSelection:
+    """Search the shapes of ``setting.shapes``. Raises InputError for an unknown shape or name."""
+    library = CachedLibrary((library or Library.default()).folders)
+    shapes = _named(target)
+    scene = base_scene(target, where, library)
+    resins, left_out = resins_of(target, where, scene, base_sensor(scene), library)
+    search = _Search(target, scene, library)
+    designs, missed = [], {}
+    for number, shape in enumerate(shapes):
+        progress(2 * number, 2 * len(shapes), shape)
+        met = sorted(search.trials(shape, resins), key=search.order)
+        progress(2 * number + 1, 2 * len(shapes), f"{shape}, print rules")
+        found, why = search.passing(met)
+        if found is None:
+            missed[shape] = why or search.nearest.get(shape, search.refused)
+        else:
+            designs.append(found)
+    designs.sort(key=lambda one: search.order(one.trial))
+    return ShapeSelection(target, scene, tuple(designs), missed, left_out, search.solves)
+
+
+def _named(target: Target) -> list[str]:
+    names = list(dict.fromkeys(target.setting.shapes or ()))
+    if names == [ANY]:
+        return list(VARIANTS)
+    for name in names:
+        if name not in VARIANTS:
+            why = "it has no proportions to try" if name in SHAPES else f"unknown shape.{nearest(name, VARIANTS)}"
+            raise InputError(why, key="setting.shapes", value=name, remedy=f"take {', '.join(VARIANTS)}")
+    return names
+
+
+@dataclass
+class _Search:
+    """Trials for a target on a base. ``nearest`` has, by shape, what the nearest design misses, in words; ``refused``
+    why the last one that could not be pressed has none."""
+
+    target: Target
+    base: ResolvedDesign
+    library: Library
+    solves: int = 0
+    nearest: dict[str, str] = field(default_factory=dict)
+    refused: str = "none of its designs has a range that a straight line explains"
+    _far: dict[str, float] = field(default_factory=dict)
+    _balls: dict[int, float | None] = field(default_factory=dict)
+
+    def trials(self, shape: str, resins: tuple[CandidateResin, ...]) -> Iterator[ShapeTrial]:
+        """Designs of a shape that meet the target."""
+        for sizes in VARIANTS[shape]:
+            for radius in self._radii(shape, sizes):
+                for resin in resins:
+                    for pressure in self._pressures():
+                        trial = self._solved(shape, sizes, resin, radius, pressure)
+                        if trial is not None and self._meets(trial):
+                            yield trial
+
+    def order(self, trial: ShapeTrial) -> float:
+        """Key by which designs are sorted, least first; the print error of the wall is the same for all."""
+        prefer = self.target.weights.prefer or "robust"
+        if prefer == "ball":
+            ball = self.ball(trial)
+            return np.inf if ball is None else abs(float(np.log(ball)))
+        return {
+            "robust": float(np.nan_to_num(abs(trial.slope), nan=np.inf)) / trial.sensor.dome.wall_thickness,
+            "travel": -trial.state.range_end,
+            "force": -trial.figures.force_high,
+            "low": trial.sensor.dome.shape.outer_height,
+        }[prefer]
+
+    def ball(self, trial: ShapeTrial) -> float | None:
+        """Sensitivity under a ball of `BALL_MM` over that under the plate; None where no straight line explains it."""
+        if id(trial) not in self._balls:
+            changes = {**trial.changes, "contact.object": "ball", "contact.ball_radius_mm": BALL_MM}
+            pressed = self._pressed(changes, trial.state.driving_pressure)
+            figures = None if pressed is None else pressed[1].figures
+            self._balls[id(trial)] = None if figures is None else figures.sensitivity / trial.figures.sensitivity
+        return self._balls[id(trial)]
+
+    def passing(self, trials: list[ShapeTrial]) -> tuple[ShapeDesign | None, str | None]:
+        """The first of ``trials`` that passes ``check`` at a rated pressure, or why the last one does not."""
+        why = None
+        for trial in trials[:_JUDGED]:
+            source = source_of(self.base, _texts(trial.changes))
+            reason, evaluation = judge(source, self.library, predicted=True)
+            if reason is not None or evaluation is None:
+                why = f"`check` refuses the best: {'' if reason is None else reason[1]}"
+                continue
+            rated = evaluation.rating.pressure
+            if rated < trial.state.driving_pressure:
+                why = f"the best is rated for {rated / KPA:.3g} kPa"
+                continue
+            return ShapeDesign(trial, rated, self.ball(trial)), None
+        return None, why
+
+    def _pressures(self) -> list[float]:
+        """Driving pressures that are tried, MPa: the target's, else none and the middle one of the base."""
+        stated_kPa = self.target.target.driving_pressure_kPa
+        if stated_kPa is not None:
+            return [stated_kPa * KPA]
+        listed_kPa = sorted(self.base.design.pneumatics.driving_pressures_kPa)
+        return sorted({0.0, listed_kPa[len(listed_kPa) // 2] * KPA})
+
+    def _radii(self, shape: str, sizes: Mapping[str, float]) -> list[float]:
+        """Inner radii to try, mm: shares of the greatest that diameter, footprint and height leave, else of the
+        base's."""
+        figures, given = self.target.target, self.target.given
+        if given.inner_radius_mm is not None:
+            return [given.inner_radius_mm]
+        unit = shape_of(shape, 10.0, 10.0 * _DRAWN_SHARE, {name: 10.0 * share for name, share in sizes.items()})
+        limits = []
+        if figures.max_diameter_mm is not None:
+            limits.append(0.5 * figures.max_diameter_mm * 10.0 / unit.outer_radius)
+        if figures.max_height_mm is not None and unit.outer_height > 0.0:
+            limits.append(figures.max_height_mm * 10.0 / unit.outer_height)
+        if figures.max_footprint_mm is not None:
+            tried = np.linspace(1.0, 0.5 * figures.max_footprint_mm, 40)
+            fits = connector_fit(self.base)(tried, _WALL_SHARE * tried).diameter <= figures.max_footprint_mm
+            limits.append(float(tried[fits].max(initial=0.0)))
+        greatest = min([*limits, *([] if limits else [self.base.design.membrane.inner_radius_mm])])
+        return [radius for share in _RADII if (radius := _rounded(share * greatest)) >= 1.0]
+
+    def _solved(
+        self, shape: str, sizes: Mapping[str, float], resin: CandidateResin, radius: float, pressure: float
+    ) -> ShapeTrial | None:
+        """The trial whose wall, or radius if the wall is given, gives the sensitivity; the nearest if none does."""
+        wall, wanted_kPa_per_N = self.target.given.wall_thickness_mm, self.target.target.sensitivity_kPa_per_N
+        low, high, at = self._bounds(radius, wall)
+        known: dict[float, float] = {}
+        best: ShapeTrial | None = None
+        while low <= high and len(known) < _SOLVES and (at := min(max(_rounded(at), low), high)) not in known:
+            found = self._trial(shape, sizes, resin, *((radius, at) if wall is None else (at, wall)), pressure)
+            if found is None:
+                # So thin or thick a wall bears no pressure or gives no straight line.
+                usual = _WALL_SHARE * radius
+                low, high = (at + _STEP, high) if at < usual else (low, at - _STEP)
+                at = float(np.sqrt(at * next(iter(known), usual)))
+                if at in known or (not known and at == usual):
+                    break
+                continue
+            gap = known[at] = (
+                0.0 if wanted_kPa_per_N is None else float(np.log(found.figures.sensitivity / wanted_kPa_per_N))
+            )
+            best = found if abs(gap) == min(map(abs, known.values())) else best
+            if abs(gap) < _MET * self.target.target.tolerance_percent / 100 and len(known) > 1:
+                break
+            at = _next(known, low, high, falls=wall is None)
+        return None if best is None else replace(best, slope=_slope(known))
+
+    def _bounds(self, radius: float, wall: float | None) -> tuple[float, float, float]:
+        """Least and greatest size, mm, that is solved for, and the one to begin with: of the wall, or of the radius if
+        the wall is given."""
+        if wall is not None:
+            given = self.target.given.inner_radius_mm
+            return (given, given, given) if given is not None else (max(wall / _THICKEST, 1.0), radius, radius)
+        feature = self.base.printer.smallest.wall("elastomer")
+        least = feature.least or feature.recommended
+        return float(np.ceil(least / _STEP) * _STEP), _THICKEST * radius, max(least, _WALL_SHARE * radius)
+
+    def _trial(
+        self, shape: str, sizes: Mapping[str, float], resin: CandidateResin, radius: float, wall: float, pressure: float
+    ) -> ShapeTrial | None:
+        own = {f"membrane.{key_of(name)}": _rounded(share * radius) for name, share in sizes.items()}
+        changes: dict[str, Any] = {
+            **setting_changes(self.target, self.library),
+            "membrane.shape": shape,
+            "membrane.material": resin.name,
+            "membrane.inner_radius_mm": radius,
+            "membrane.wall_thickness_mm": wall,
+            **own,
+            "pneumatics.driving_pressures_kPa": sorted({0.0, round(pressure / KPA, 6)}),
+        }
+        design = self.base.design
+        plate = float(np.ceil(2 * PLATE_SHARE * radius))
+        stated = "plate_diameter_mm" in design.indentation.model_fields_set
+        if design.contact.is_plate and not stated and plate > design.indentation.plate_diameter_mm:
+            changes["indentation.plate_diameter_mm"] = plate
+        if (pressed := self._pressed(changes, pressure)) is None:
+            return None
+        sensor, state, _ = pressed
+        usable = state.figures is not None and state.figures.sensitivity > 0.0
+        short = state.range_end < _SHORTEST * sensor.protocol.depth
+        return ShapeTrial(shape, resin, changes, *pressed) if usable and not short else None
+
+    def _pressed(self, changes: Mapping[str, Any], pressure: float) -> tuple[Sensor, SensorState, float] | None:
+        """Sensor with these changes, its state by the solid, and the diameter of the whole; None if it has none."""
+        self.solves += 1
+        try:
+            scene = load_scene(source_of(self.base, _texts(changes)), {"indentation.checked_waves": 0}, self.library)
+            assembly = assemble(scene)
+            sensor = sensor_of(assembly)
+            return sensor, solid_states(sensor, np.array([pressure]))[0], 2.0 * assembly.layout.plate_radius
+        except (InputError, ComputationError) as error:
+            self.refused = "; ".join(part for part in (error.problem, error.remedy) if part)
+            return None
+
+    def _meets(self, trial: ShapeTrial) -> bool:
+        """True if a trial meets the target; what the nearest misses is kept."""
+        misses = _misses(self.target, trial)
+        size = max(misses.values(), default=0.0)
+        if misses and size < self._far.get(trial.shape, np.inf):
+            self._far[trial.shape] = size
+            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, miss in misses.items())
+            self.nearest[trial.shape] = f"the nearest, in {trial.resin.name}, misses {listed}"
+        return not misses
+
+
+def _misses(target: Target, trial: ShapeTrial) -> dict[str, float]:
+    """Requirements that a trial misses, each with the share by which it does."""
+    wanted, figures, misses = target.target, trial.figures, {}
+    if wanted.sensitivity_kPa_per_N is not None:
+        gap = abs(figures.sensitivity / wanted.sensitivity_kPa_per_N - 1.0)
+        if gap > wanted.tolerance_percent / 100:
+            misses["sensitivity"] = gap
+    stiffness = figures.stiffness_at(wanted.stiffness_depth_mm)
+    outer = 2.0 * max(trial.sensor.dome.shape.outer_radius, trial.sensor.dome.inner_radius)
+    at_least = {
+        "force range": (figures.force_high, wanted.force_range_N),
+        "least stiffness": (stiffness, wanted.stiffness_least_N_per_mm),
+    }
+    at_most = {
+        "greatest stiffness": (stiffness, wanted.stiffness_most_N_per_mm),
+        "diameter": (outer, wanted.max_diameter_mm),
+        "footprint": (trial.footprint, wanted.max_footprint_mm),
+        "height": (trial.sensor.dome.shape.outer_height, wanted.max_height_mm),
+    }
+    misses |= {name: 1 - has / least for name, (has, least) in at_least.items() if least and not has >= least}
+    return misses | {name: has / most - 1 for name, (has, most) in at_most.items() if most and not has <= most}
+
+
+def _slope(known: Mapping[float, float]) -> float:
+    """Slope of ln sensitivity by ln size between the two solves nearest to the target; NaN with one."""
+    if len(known) < 2:
+        return float("nan")
+    (a, low), (b, high) = sorted(known.items(), key=lambda one: abs(one[1]))[:2]
+    return (high - low) / float(np.log(b / a))
+
+
+def _next(known: Mapping[float, float], low: float, high: float, *, falls: bool) -> float:
+    """Size to try next, by a secant in logarithms within the bracket of what is known; ``falls``: the sensitivity falls
+    with the size."""
+    low = max([low, *(size for size, gap in known.items() if (gap > 0) == falls)])
+    high = min([high, *(size for size, gap in known.items() if (gap > 0) != falls)])
+    (a, first), (b, second) = [*known.items()][-2:] if len(known) > 1 else ((1.0, 0.0), *known.items())
+    # Of membranes the sensitivity falls about as the first power of the wall.
+    slope = (second - first) / float(np.log(b / a)) if len(known) > 1 else (-1.0 if falls else 1.0)
+    at = b * float(np.exp(np.clip(-second / slope, -0.7, 0.7))) if slope else 0.0
+    return at if low < at < high else float(np.sqrt(low * high))
+
+
+def _texts(changes: Mapping[str, Any]) -> list[str]:
+    return [f"{key}={value_text(value)}" for key, value in changes.items()]
+
+
+def _rounded(size: float) -> float:
+    return float(round(np.floor(size / _STEP + 1e-6) * _STEP, 2))

@@ -1,0 +1,96 @@
+"""Selection over shapes: the best design of each meets the target, as the solid says of its own design file."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.catalogue import DesignSource
+from pneutouch.errors import InputError
+from pneutouch.evaluation import evaluate
+from pneutouch.spec.read import validate
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.checks import source_of
+from pneutouch.workflows.select.search import search
+from pneutouch.workflows.select.shapes import VARIANTS, select_shapes
+
+
+def target(shapes, prefer=None, **given):
+    wanted = {"sensitivity_kPa_per_N": 2.4, "driving_pressure_kPa": 12.0, **given}
+    return validate(
+        Target,
+        {
+            "target": wanted,
+            "given": {"materials": ["TangoPlus"]},
+            "setting": {"shapes": shapes},
+            "weights": {"prefer": prefer},
+        },
+        "here",
+    )
+
+
+def predicted(design, selection, library):
+    source = source_of(selection.base, design.assignments)
+    return evaluate(DesignSource(source.name, source.content, "here"), library=library)
+
+
+def check(design, selection, library):
+    """The design file gives the figures that the selection states, within the solid's own error."""
+    found, record = predicted(design, selection, library), design.record
+    state = found.prediction.states[-1]
+    assert state.figures.sensitivity == pytest.approx(record.sensitivity_kPa_per_N, rel=1e-3)
+    assert state.figures.force_high == pytest.approx(record.force_range_end_N, rel=2e-3)
+    assert record.sensitivity_kPa_per_N == pytest.approx(2.4, rel=0.05)
+    assert record.driving_pressure_kPa == 12.0 <= record.rated_pressure_kPa
+    assert not any(finding.severity == "error" for finding in found.findings_alone)
+
+
+def test_the_best_disc_meets_the_target_and_lies_below_the_height(library):
+    found = select_shapes(target(["disc"], "ball", max_height_mm=3.0, max_diameter_mm=22.0), "here", library)
+    (best,) = found.designs
+    check(best, found, library)
+    assert best.record.height_mm <= 3.0 and best.record.inner_radius_mm <= 11.0
+    # A boss spreads the load of a small ball; bare, the disc reads it as much more.
+    assert "boss_radius_mm" in best.record.sizes
+    assert best.ball == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.slow
+def test_each_shape_has_the_best_of_what_was_preferred(library):
+    for prefer, key in (("travel", "travel_mm"), ("force", "force_range_end_N"), ("low", "height_mm")):
+        found = select_shapes(target(["any"], prefer, max_diameter_mm=24.0), "here", library)
+        values = [getattr(one, key) for one in found.record.designs]
+        assert len(values) >= 4 and {one.shape for one in found.record.designs} | found.missed.keys() == VARIANTS.keys()
+        assert values == sorted(values, reverse=prefer != "low")
+        for design in found.designs[:2]:
+            check(design, found, library)
+
+
+def test_a_shape_that_cannot_meet_the_target_says_what_its_nearest_misses(library):
+    found = select_shapes(target(["hemisphere"], max_height_mm=3.0, force_range_N=50.0), "here", library)
+    assert not found.designs and found.missed.keys() == {"hemisphere"}
+    assert found.record.met is False
+
+
+@pytest.mark.parametrize("shape", ["discus", "profile"])
+def test_a_name_that_is_no_shape_to_search_is_refused(shape, library):
+    with pytest.raises(InputError) as caught:
+        search(target([shape]), "here", library)
+    assert (caught.value.key, caught.value.value) == ("setting.shapes", shape)
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "value"),
+    [("given", "graded", True), ("setting", "processes", ["any"]), ("weights", "contact_anywhere", True)],
+)
+def test_what_a_search_over_shapes_does_not_take_contradicts_it(table, key, value):
+    content = {"target": {"sensitivity_kPa_per_N": 2.0}, "setting": {"shapes": ["any"]}}
+    content.setdefault(table, {})[key] = value
+    with pytest.raises(InputError):
+        validate(Target, content, "here")
+
+
+def test_a_height_is_for_shapes():
+    content = {"target": {"sensitivity_kPa_per_N": 2.0, "max_height_mm": 6.0}}
+    with pytest.raises(InputError) as caught:
+        validate(Target, content, "here")
+    assert "target.max_height_mm" in (caught.value.key, *caught.value.fields)
