@@ -58,6 +58,25 @@ def test_a_process_in_which_nothing_meets_the_target_shows_what_is_nearest():
 
 
 @pytest.mark.slow
+def test_the_best_of_each_shape_is_a_card_that_is_the_row_saved(command, tmp_path, library):
+    values = {
+        "target.sensitivity_kPa_per_N": "2.4",
+        "target.driving_pressure_kPa": "12",
+        "given.materials": '["TangoPlus"]',
+        "setting.shapes": '["disc", "cap"]',
+        "weights.prefer": "low",
+    }
+    content = asked(values)
+    assert [card["label"] for card in content["cards"]] == ["disc", "cap"]
+    assert [row[1] for row in content["table"]["rows"]] == ["disc", "cap"]
+    second = content["cards"][1]
+    said = command(*shlex.split(second["command"])[1:], "--json", "--out", str(tmp_path))
+    printed = json.loads(said.stdout)
+    assert {**json.loads(json.dumps(content["selection"])), "written": printed["written"]} == printed
+    assert opened(second["state"], library) == DesignSource.of(printed["written"], library).changed({})
+
+
+@pytest.mark.slow
 def test_a_grade_is_one_card_with_the_table_of_the_command(tmp_path, command, library, monkeypatch):
     monkeypatch.setattr("pneutouch.workflows.select.graded._TRIALS", 6)
     path = tmp_path / "shallow.toml"

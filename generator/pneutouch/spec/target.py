@@ -8,6 +8,9 @@ from pydantic import Field, field_validator, model_validator
 from pneutouch.spec.fields import FieldsError, SparseTable, Table, name, number
 from pneutouch.spec.printer import Process
 
+SearchedShape = Literal["hemisphere", "cap", "ellipsoid", "thimble", "disc", "corrugated"]
+"""Shapes that have proportions to search; a profile is drawn."""
+
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 
 
@@ -204,8 +207,9 @@ class Setting(SparseTable):
         help="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
     )
 
-    shapes: Names | None = Field(
+    shapes: list[Literal["any", SearchedShape]] | None = Field(
         default=None,
+        min_length=1,
         description="Search these shapes by the solid and show the best of each, such as cap,disc; any: of all.",
     )
 

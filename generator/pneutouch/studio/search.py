@@ -128,7 +128,7 @@ def _by_shape(selection: ShapeSelection, document: Mapping[str, Any], page: Cand
         extended(
             CandidateCard,
             shape_figures(record, rank),
-            kind="process",
+            kind="shape",
             label=record.shape,
             note="",
             passes=True,

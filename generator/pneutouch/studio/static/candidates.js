@@ -5,6 +5,7 @@ import { TradeOff } from "./tradeoff.js";
 const TITLES = {
   best: "Best of its resin",
   process: "Best of its process",
+  shape: "Best of its shape",
   "runner-up": "Runner-up of its resin",
   nearest: "Nearest to the target",
   changed: "Fits with one change",

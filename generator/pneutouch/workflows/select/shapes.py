@@ -12,7 +12,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import CachedLibrary
-from pneutouch.errors import ComputationError, InputError, nearest
+from pneutouch.errors import ComputationError, InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.prediction import SensorState
@@ -21,15 +21,15 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
 from pneutouch.results.selection import ShapeRecord, ShapesRecord
 from pneutouch.selection import CandidateResin
-from pneutouch.shape import SHAPES, key_of, shape_of, stated_sizes
-from pneutouch.spec.target import Target
+from pneutouch.shape import key_of, shape_of, stated_sizes
+from pneutouch.spec.target import SearchedShape, Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import ANY, base_scene, setting_changes
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, judge, source_of
 from pneutouch.workflows.select.select import PLATE_SHARE, resins_of
 
-VARIANTS: dict[str, tuple[dict[str, float], ...]] = {
+VARIANTS: dict[SearchedShape, tuple[dict[str, float], ...]] = {
     "hemisphere": ({},),
     "cap": ({"rise": 0.35}, {"rise": 0.5}, {"rise": 0.7}),
     "ellipsoid": ({"rise": 0.6}, {"rise": 1.4}),
@@ -37,7 +37,7 @@ VARIANTS: dict[str, tuple[dict[str, float], ...]] = {
     "disc": ({}, {"boss_radius": 0.35, "boss_height": 0.2}),
     "corrugated": ({"rise": 0.1},),
 }
-"""Sizes over the inner radius in which each shape is tried: our choice; a profile has no proportions to try."""
+"""Sizes over the inner radius in which each shape is tried: our choice."""
 
 BALL_MM = 5.0
 """Radius of the small ball whose reading is set beside the plate's."""
@@ -64,7 +64,7 @@ _STEP = 0.01
 
 @dataclass(frozen=True)
 class ShapeTrial:
-    """A design that was pressed by the solid: its changes to the base, by ``table.key``, sensor and state; and the slope
+    """A design that was pressed by the solid: its changes to the base, by ``table.key``, sensor and state; and slope
     of its ln sensitivity by ln wall, NaN from a single solve."""
 
     shape: str
@@ -144,13 +144,15 @@ def select_shapes(
     *,
     progress: Callable[[int, int, str], None] = lambda done, total, step: None,
 ) -> ShapeSelection:
-    """Search the shapes of ``setting.shapes``. Raises InputError for an unknown shape or name."""
+    """Search the shapes of ``setting.shapes``. Raises InputError for an unknown name."""
     library = CachedLibrary((library or Library.default()).folders)
-    shapes = _named(target)
+    named = list(dict.fromkeys(target.setting.shapes or ()))
+    shapes = [shape for shape in VARIANTS if ANY in named or shape in named]
     scene = base_scene(target, where, library)
     resins, left_out = resins_of(target, where, scene, base_sensor(scene), library)
     search = _Search(target, scene, library)
-    designs, missed = [], {}
+    designs: list[ShapeDesign] = []
+    missed: dict[str, str] = {}
     for number, shape in enumerate(shapes):
         progress(2 * number, 2 * len(shapes), shape)
         met = sorted(search.trials(shape, resins), key=search.order)
@@ -162,17 +164,6 @@ def select_shapes(
             designs.append(found)
     designs.sort(key=lambda one: search.order(one.trial))
     return ShapeSelection(target, scene, tuple(designs), missed, left_out, search.solves)
-
-
-def _named(target: Target) -> list[str]:
-    names = list(dict.fromkeys(target.setting.shapes or ()))
-    if names == [ANY]:
-        return list(VARIANTS)
-    for name in names:
-        if name not in VARIANTS:
-            why = "it has no proportions to try" if name in SHAPES else f"unknown shape.{nearest(name, VARIANTS)}"
-            raise InputError(why, key="setting.shapes", value=name, remedy=f"take {', '.join(VARIANTS)}")
-    return names
 
 
 @dataclass
@@ -189,7 +180,7 @@ class _Search:
     _far: dict[str, float] = field(default_factory=dict)
     _balls: dict[int, float | None] = field(default_factory=dict)
 
-    def trials(self, shape: str, resins: tuple[CandidateResin, ...]) -> Iterator[ShapeTrial]:
+    def trials(self, shape: SearchedShape, resins: tuple[CandidateResin, ...]) -> Iterator[ShapeTrial]:
         """Designs of a shape that meet the target."""
         for sizes in VARIANTS[shape]:
             for radius in self._radii(shape, sizes):
