@@ -7,8 +7,10 @@ import tomllib
 
 import pytest
 
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.catalogue.library import COMMANDS, examples
+from pneutouch.parts import assemble
+from pneutouch.shape import SHAPES, starting_sizes
 from tests.conftest import ROOT
 
 
@@ -201,6 +203,16 @@ def test_a_process_the_resin_is_not_made_by_is_refused(command, tmp_path, words,
     done = command("new", "mine", *words)
     assert done.returncode == 2 and problem in done.stderr, done.stderr
     assert not (tmp_path / "designs").exists()
+
+
+@pytest.mark.parametrize("shape", [name for name in SHAPES if name != "hemisphere"])
+def test_a_new_design_of_every_shape_states_its_sizes_and_can_be_drawn(shape, command, tmp_path, library):
+    assert command("new", "pad", "--shape", shape, "--out", str(tmp_path)).returncode == 0
+    source = DesignSource.of(str(tmp_path / "pad.toml"), library)
+    membrane = source.changed({}).membrane
+    assert membrane.shape == shape
+    assert starting_sizes(shape, membrane.inner_radius_mm).items() <= membrane.model_dump().items()
+    assert assemble(load_scene(source, {}, library)).bodies
 
 
 @pytest.mark.parametrize("process", ["filament", "resin", "polyjet"])

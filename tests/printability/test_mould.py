@@ -25,6 +25,12 @@ def findings(rule: str, *assignments: str):
     return MOULD_RULES[rule](mould(*assignments))
 
 
+def test_a_dome_that_bulges_over_its_rim_is_held_back_by_its_mould_at_the_place_named():
+    points = "membrane.profile_mm=[[9.25,0],[9.25,2,2],[11.5,6,3],[8,9.5,3],[0,9.5]]"
+    found = [one for one in findings("mould fit", "membrane.shape=profile", points) if one.severity == "error"]
+    assert found and all("12." in one.fix for one in found)
+
+
 def test_the_shipped_design_s_mould_breaks_no_rule():
     listed = check_mould(mould())
     assert [finding for finding in listed if finding.severity == "error"] == []

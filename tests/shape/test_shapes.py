@@ -91,6 +91,47 @@ def test_the_wall_is_as_thick_as_stated_everywhere_but_on_a_boss(shape):
     assert off == pytest.approx(0.8, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("shape", "upright"), [("cap", False), ("disc", False), ("thimble", True), ("ellipsoid", True)]
+)
+def test_a_flange_held_as_printed_is_for_upright_walls(shape, upright, library):
+    changes = {"membrane.shape": shape, "pneumatics.driving_pressures_kPa": [8.0]}
+    if upright:
+        assert evaluate("paper-dome", changes, clamp="flange", library=library).prediction.states[0].range_end > 0.0
+        return
+    with pytest.raises(InputError) as caught:
+        evaluate("paper-dome", changes, clamp="flange", library=library)
+    assert (caught.value.key, caught.value.value) == ("clamp", "flange")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"membrane.shape": "cap"},
+        {"membrane.shape": "disc", "membrane.boss_radius_mm": 4.0, "membrane.boss_height_mm": 2.5},
+        {"membrane.shape": "corrugated", "membrane.rise_mm": 1.0},
+    ],
+    ids=lambda changes: changes["membrane.shape"],
+)
+def test_a_central_press_is_the_same_by_solid_and_harmonic(changes, library):
+    at = {"pneumatics.driving_pressures_kPa": [8.0], "pneumatics.dead_volume_mL": 1.0}
+    solid, harmonic = (
+        evaluate("paper-dome", {**changes, **at}, model=model, library=library).prediction.states[0].figures
+        for model in ("solid", "harmonic")
+    )
+    assert harmonic.sensitivity == pytest.approx(solid.sensitivity, rel=1e-4)
+    assert harmonic.force_high == pytest.approx(solid.force_high, rel=1e-4)
+
+
+def test_a_plate_that_comes_down_on_the_flange_ends_the_range_with_a_finding(library):
+    """A level disc without driving pressure lies in the plane of its flange: a wide plate touches both at once."""
+    changes = {"membrane.shape": "disc", "pneumatics.driving_pressures_kPa": [0.0, 12.0]}
+    found = evaluate("paper-dome", changes, library=library)
+    level, blown = found.prediction.states
+    assert level.range_end < 1e-3 < blown.range_end
+    assert any(one.rule == "driving" and one.severity == "warning" for one in found.findings_alone)
+
+
 @pytest.mark.parametrize("key", HALF_BALLS)
 def test_a_hemisphere_under_another_name_has_its_figures(key, evaluated):
     usual = evaluated("paper-dome").prediction

@@ -240,6 +240,10 @@ def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
 
         check_options(scene, options.model, options.clamp)
     assembly = assemble(scene)
+    if options.clamp == "flange" and not assembly.layout.shape.plain.upright:
+        problem = f"the wall of a {assembly.layout.shape.key} does not stand upright on the base plane"
+        remedy = "take `clamp` base; a flange held as printed is modelled under upright walls"
+        raise InputError(problem, file=scene.where, key="clamp", value=options.clamp, remedy=remedy)
     sensor = sensor_of(assembly, options.clamp)
     notes: list[str] = []
     if options.aged:

@@ -73,6 +73,12 @@ class DomeShape(ABC):
         return self.outer[0].start[0]
 
     @property
+    def upright(self) -> bool:
+        """True if the wall stands upright on the base plane, so that its clamped edge lies in it."""
+        inner, outer = self.inner[0].start, self.outer[0].start
+        return abs(inner[1]) + abs(outer[1]) + abs(outer[0] - inner[0] - self.wall_thickness) < 1e-9 * self.inner_radius
+
+    @property
     def floor(self) -> float:
         """Height of the rigid body behind the dome: that of the inner face's rim, for a flat wall lower."""
         return self.inner[0].start[1]

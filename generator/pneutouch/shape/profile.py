@@ -80,6 +80,9 @@ class Profile(FlatDome):
         for k, (one, other) in enumerate(pairwise(points)):
             if math.dist(one[:2], other[:2]) < 1e-6:
                 yield f"the points {k} and {k + 1} are one"
+        first = _direction(self._point(0), self._point(1))
+        if first[0] > _LEVEL:
+            yield f"the wall leans outwards at its rim, from {self._place(self._point(0))}: begin upright or inwards"
         yield from self._corners()
         tip = _direction(self._point(len(points) - 2), self._point(len(points) - 1))
         if abs(math.atan2(tip[1], -tip[0])) > _LEVEL:

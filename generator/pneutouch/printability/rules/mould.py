@@ -7,6 +7,7 @@ from pneutouch.parts.mould.filling import SAFETY, SYRINGE_KPA, MouldFilling, fil
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.results.printing import Excess, Finding, Severity
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import Casting
 from pneutouch.units import UM
 from pneutouch.wording import data_of
@@ -61,9 +62,18 @@ def _undercuts(mould: MouldAssembly) -> list[Finding]:
         where = next(place.where for place in places if place.part == part)
         count = sum(place.part == part for place in places)
         text = f"{count} places of it hold the silicone back along the draw"
-        fix = "raise mould.draft_deg, or report the design"
+        fix = _narrower(mould.scene.design.membrane.dome) or "raise mould.draft_deg, or report the design"
         findings.append(Finding("mould fit", "error", part, text, fix, _MEASURED, where, Excess(count, 0, "places")))
     return findings
+
+
+def _narrower(dome: DomeShape) -> str | None:
+    """Remedy for a dome that is wider above its rim than at it, with the place; None for one that is not."""
+    along = np.concatenate([piece.along(np.linspace(0.0, 1.0, 33)) for piece in dome.outer])
+    r, z = along[along[:, 0].argmax()].tolist()
+    if r <= dome.outer_radius * (1 + 1e-6):
+        return None
+    return f"the dome is widest above its rim, at r = {r:.4g}, z = {z:.4g} mm: draw it no wider there than at the rim"
 
 
 def _draft(mould: MouldAssembly) -> list[Finding]:
