@@ -242,3 +242,13 @@ def test_from_the_least_range_on_the_sensitivity_is_within_the_stated_error(radi
     if ours.limitation is None:
         assert state.figures.sensitivity == pytest.approx(theirs.figures.sensitivity, rel=TABULATION)
         assert (np.diff(state.force) >= 0.0).all() and (np.diff(state.pressure_rise) >= 0.0).all()
+
+
+def test_a_plate_that_comes_down_on_the_ring_is_left_to_the_solid():
+    """On a small dome the ring stands as high as the pressed wall: the solid ends the range where the plate meets it."""
+    base = RigidBase(1.0, ring=6.8, ring_height=2.5)
+    small = SENSOR.replace(inner_radius=5.0, wall_thickness=0.8, base=base, depth=3.75)
+    assert outside_atlas(small.replace(base=RigidBase(1.0))) is None and outside_atlas(small) is not None
+    assert outside_atlas(small.replace(plate_radius=6.7)) is None or meets_ring(small)
+    state = predict("x", small, [0.0], model="auto").states[0]
+    assert state.range_end == pytest.approx(5.8 - 2.5, rel=1e-3)

@@ -28,6 +28,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (no_hemisphere(dome.shape) is not None, str(no_hemisphere(dome.shape))),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
         (dome.base is None, "the wall passes through its base plane"),
+        (_on_ring(sensor), "the plate comes down on the ring around the flange"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (
@@ -63,6 +64,14 @@ def meets_ring(sensor: Sensor) -> bool:
     deep = max(0.0, depth - _RING_FROM) / (shipped().recipe.deepest - _RING_FROM)
     gap = base.ring / dome.inner_radius - 1.0 - wall
     return deep > 0.0 and gap < _BULGE * deep / wall + _RING_ROUND
+
+
+def _on_ring(sensor: Sensor) -> bool:
+    """True if the plate would reach the ring around the flange within the depth, were the dome not inflated."""
+    dome, base = sensor.dome, sensor.dome.base
+    if base is None or sensor.protocol.plate_radius <= base.ring:
+        return False
+    return dome.shape.outer_height - sensor.protocol.depth < base.ring_height
 
 
 def under_plate(sensor: Sensor) -> Sensor:
