@@ -18,7 +18,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.checks import base_sensor, sensitivity_uncertainties
-from pneutouch.workflows.select.select import _resins, problem_of, select
+from pneutouch.workflows.select.select import resins_of, problem_of, select
 
 FIGURES = TargetFigures(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, force_range_N=15, max_diameter_mm=25)
 """The target of docs/background/off-axis.md."""
@@ -29,7 +29,7 @@ def problem(library):
     target = Target(target=FIGURES)
     scene = base_scene(target, "target", library)
     sensor = base_sensor(scene)
-    resins, _ = _resins(target, "target", scene, sensor, library)
+    resins, _ = resins_of(target, "target", scene, sensor, library)
     errors = measured_errors(library.all("materials", Material))
     return problem_of(target, scene, sensor, resins), partial(sensitivity_uncertainties, scene, sensor, errors)
 
