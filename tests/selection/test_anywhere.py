@@ -18,7 +18,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.checks import base_sensor, sensitivity_uncertainties
-from pneutouch.workflows.select.select import resins_of, problem_of, select
+from pneutouch.workflows.select.select import problem_of, resins_of, select
 
 FIGURES = TargetFigures(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, force_range_N=15, max_diameter_mm=25)
 """The target of docs/background/off-axis.md."""

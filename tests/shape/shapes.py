@@ -72,4 +72,9 @@ SIZES = {
 def shipped(inner_radius, wall_thickness):
     """Every shape of the program at one radius and wall, and a flat disc."""
     size = inner_radius, wall_thickness
-    return [*(shape_of(key, *size, SIZES.get(key, {})) for key in SHAPES), shape_of("disc", *size, {})]
+    varying = {"wall_stations": [[0.0, 0.8], [0.4, 1.0], [1.0, 1.5]], "root_fillet": 0.05 * inner_radius}
+    return [
+        *(shape_of(key, *size, SIZES.get(key, {})) for key in SHAPES),
+        shape_of("disc", *size, {}),
+        *(shape_of(key, *size, varying) for key in ("hemisphere", "cap", "thimble")),
+    ]

@@ -80,7 +80,10 @@ def test_arcs_fitted_to_a_wave_follow_it():
     assert all(one.end == pytest.approx(other.start, abs=1e-12) for one, other in pairwise(pieces))
 
 
-@pytest.mark.parametrize("shape", shipped(9.25, 0.8), ids=lambda shape: shape.key)
+EVEN = [shape for shape in shipped(9.25, 0.8) if not getattr(shape, "wall_stations", ())]
+
+
+@pytest.mark.parametrize("shape", EVEN, ids=lambda shape: shape.key)
 def test_the_wall_is_as_thick_as_stated_everywhere_but_on_a_boss(shape):
     share = np.linspace(0.0, 1.0, 501)
     inner, outer = np.moveaxis(shape.points(share, np.array([0.0, 1.0])), 1, 0)
@@ -89,6 +92,45 @@ def test_the_wall_is_as_thick_as_stated_everywhere_but_on_a_boss(shape):
     assert np.linalg.norm(outer - inner, axis=1) == pytest.approx(0.8, rel=1e-9)
     off = np.min([piece.distance(outer) for piece in shape.inner], axis=0)
     assert off == pytest.approx(0.8, rel=1e-9)
+
+
+@pytest.mark.parametrize("key", ["hemisphere", "cap", "ellipsoid", "thimble", "disc"])
+def test_a_wall_of_stations_is_as_thick_as_they_say_and_level_at_the_pole(key):
+    shape = shape_of(key, 9.25, 0.8, {"wall_stations": [[0.0, 1.0], [0.5, 1.4], [1.0, 1.8]]})
+    share = np.array([0.0, 0.5, 1.0])
+    thick = np.linalg.norm(np.diff(shape.points(share, np.array([0.0, 1.0])), axis=1)[:, 0], axis=1)
+    assert thick[[0, 2]] == pytest.approx([0.8 * 1.8, 0.8], rel=1e-5)
+    assert thick[1] == pytest.approx(0.8 * 1.4, rel=0.05)
+    assert shape.normals(np.ones(1))[0] == pytest.approx((0.0, 1.0), abs=2e-3)
+
+
+def test_a_wall_of_equal_stations_and_a_fillet_are_those_of_the_even_hemisphere(library):
+    at = {"pneumatics.driving_pressures_kPa": [5.0], "membrane.root_fillet_mm": 1.0}
+    one, other = (
+        evaluate("paper-dome", {**at, **more}, library=library).prediction.states[0].figures
+        for more in ({}, {"membrane.wall_stations": [[0.0, 1.0], [1.0, 1.0]]})
+    )
+    assert other.sensitivity == pytest.approx(one.sensitivity, rel=2e-4)
+    assert other.force_high == pytest.approx(one.force_high, rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("stations", "shape"),
+    [
+        ([[0, 1.0]], "cap"),
+        ([[0.1, 1.0], [1, 1.2]], "cap"),
+        ([[0, 1.0], [1, 9.0]], "cap"),
+        ([[0, 1.0], [1, 3.0]], "corrugated"),
+    ],
+)
+def test_stations_that_make_no_wall_are_refused(stations, shape, library):
+    with pytest.raises(InputError) as caught:
+        load_scene(
+            "paper-dome",
+            {"membrane.shape": shape, "membrane.rise_mm": 3.0, "membrane.wall_stations": stations},
+            library,
+        )
+    assert "membrane.wall_stations" in (caught.value.key, *caught.value.fields)
 
 
 @pytest.mark.parametrize(

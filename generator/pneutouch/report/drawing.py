@@ -122,17 +122,20 @@ class _Section:
     def _leaders(self) -> None:
         layout, unit, ax = self.layout, self.unit, self.ax
         outside, middle = layout.outer_radius + 4.5 * unit, layout.inner_radius + 0.5 * layout.wall
-        wall = f"wall {layout.wall:g} {self.soft}"
+        varies = getattr(layout.shape, "wall_stations", None)
+        wall = f"wall {layout.shape.stated_wall if varies else f'{layout.wall:g} {self.soft}'}"
+        fillet = self.assembly.scene.design.membrane.root_fillet_mm
         if no_hemisphere(layout.shape.plain) is None:
             note = f"R{layout.inner_radius:g} {self.soft}"
             leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
             leader(ax, polar(middle, 55), polar(outside, 55), wall, "left")
         else:
             high, (r, z) = self.top + 2.5 * unit, layout.shape.points(np.array([0.3]), np.array([0.5]))[0, 0].tolist()
-            leader(ax, (r, z), (0.7 * layout.outer_radius, high), wall, "left")
+            rounded = "" if fillet is None else f"\nfillet R{fillet:g}"
+            leader(ax, (r, z), (0.7 * layout.outer_radius, high), f"{wall}{rounded}", "left")
             (r, z), note = layout.shape.inner[0].start, f"inside Ø{2 * layout.inner_radius:g} {self.soft}"
             leader(ax, (-r, z), (-0.7 * layout.outer_radius, high), f"{note}\n{layout.shape.further}", "right")
-        if (fillet := self.assembly.scene.design.membrane.root_fillet_mm) is not None:
+        if fillet is not None and no_hemisphere(layout.shape.plain) is None:
             (r, z), text = layout.shape.outer[0].along(np.array([0.5]))[0], f"fillet R{fillet:g}"
             leader(ax, (r, z), polar(outside, 25), text, "left")
         text, port = port_note(self.assembly.scene), layout.port

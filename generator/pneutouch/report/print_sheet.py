@@ -72,7 +72,7 @@ def code_fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
         ("PNT", f"pneumatic touch sensor, {shape.adjective}"),
         *named,
         (f"R{100 * membrane.inner_radius_mm:04.0f}", f"inner radius {membrane.inner_radius_mm:g} mm"),
-        (f"T{100 * membrane.wall_thickness_mm:03.0f}", f"wall {membrane.wall_thickness_mm:g} mm"),
+        (f"T{100 * membrane.wall_thickness_mm:03.0f}", f"wall {shape.stated_wall}"),
         (scene.membrane_material.code, scene.membrane_material.label),
         (scene.port.code, scene.port.title),
         (scene.seat.code, scene.seat.title),

@@ -20,10 +20,12 @@ def front_error(errors: tuple[float, float]) -> str:
 
 def description(scene: ResolvedDesign) -> str:
     """One paragraph on the sensor and the way it works."""
-    membrane, further = scene.design.membrane, scene.design.membrane.dome.further
+    membrane, dome = scene.design.membrane, scene.design.membrane.dome
+    fillet = membrane.root_fillet_mm and f"root fillet {membrane.root_fillet_mm:g} mm"
+    sizes = "".join(f"{words}, " for words in (dome.further, fillet) if words)
     return (
-        f"A soft {membrane.dome.adjective} membrane ({membrane.inner_radius_mm:g} mm inner radius, "
-        f"{further + ', ' if further else ''}{membrane.wall_thickness_mm:g} mm wall, "
+        f"A soft {dome.adjective} membrane ({membrane.inner_radius_mm:g} mm inner radius, "
+        f"{sizes}{dome.stated_wall} wall, "
         f"{scene.membrane_material.label}) closes an air cavity on a rigid "
         f"connector ({scene.connector_material.label}). Pressing the dome raises the pressure of the trapped air, and "
         "the pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the "

@@ -36,33 +36,36 @@ def shape_of(key: str, inner_radius: float, wall_thickness: float, sizes: Mappin
 
     Raises ShapeError for a size that the shape does not have, or that makes it impossible.
     """
-    kind = FilletedHemisphere if key == Hemisphere.key and "root_fillet" in sizes else _loaded(SHAPES[key])
+    kind = _kind(key, sizes)
     own = dataclasses.fields(kind)[2:]
     for size in sizes:
         if size not in own_sizes(kind):
             takes = " and ".join(f"membrane.{key_of(name)}" for name in own_sizes(kind)) or "no further size"
             raise ShapeError(f'the shape "{key}" has no {key_of(size)}; it takes {takes}', "shape", key_of(size))
     usual = {size: share * inner_radius for size, share in kind.usual.items()}
-    known = {**usual, **{name: _fixed(size) for name, size in sizes.items()}}
+    known = {**usual, **{name: _fixed(name, size) for name, size in sizes.items()}}
     for field in own:
         if field.default is dataclasses.MISSING and field.name not in known:
             raise ShapeError(f'the shape "{key}" needs membrane.{key_of(field.name)}', key_of(field.name))
     shape = kind(inner_radius, wall_thickness, **known)
-    if shape.fault is not None:
-        size, why = shape.fault
+    fault = shape.wall_fault or shape.fault
+    if fault is not None:
+        size, why = fault
         stated = f" = {known[size]:g}" if isinstance(known.get(size), float) else ""
         raise ShapeError(f"{key_of(size)}{stated}: {why}", key_of(size))
     return shape
 
 
 def own_sizes(shape: DomeShape | type[DomeShape]) -> list[str]:
-    """Names of the sizes that a shape has besides radius and wall."""
-    return [field.name for field in dataclasses.fields(shape)[2:]]
+    """Names of the sizes that a shape has besides radius and wall; those that most shapes have come last."""
+    names = [field.name for field in dataclasses.fields(shape)[2:]]
+    return sorted(names, key=("wall_stations", "root_fillet").__contains__)
 
 
 def stated_sizes(shape: DomeShape) -> Mapping[str, Any]:
-    """The sizes that a shape has besides radius and wall by their key in a design file; points as lists."""
-    return {key_of(name): _plain(getattr(shape, name)) for name in own_sizes(shape)}
+    """The sizes besides radius and wall that a shape states, by their key in a design file; points as lists."""
+    sizes = {key_of(name): _plain(getattr(shape, name)) for name in own_sizes(shape)}
+    return {key: size for key, size in sizes.items() if size}
 
 
 def sizes_of(key: str) -> list[str]:
@@ -85,7 +88,14 @@ def starting_sizes(key: str, inner_radius: float, digits: int = 2) -> Mapping[st
 
 def key_of(size: str) -> str:
     """Key of a size in a design file, by its field."""
-    return size if size == "grooves" else f"{size}_mm"
+    return size if size in ("grooves", "wall_stations") else f"{size}_mm"
+
+
+def _kind(key: str, sizes: Mapping[str, Any]) -> type[DomeShape]:
+    """Class of a shape; a hemisphere has others with a fillet and with a wall that varies."""
+    if key != Hemisphere.key or not sizes:
+        return _loaded(SHAPES[key])
+    return _loaded("cap.VaryingHemisphere") if "wall_stations" in sizes else FilletedHemisphere
 
 
 def _loaded(shape: str | type[DomeShape]) -> type[DomeShape]:
@@ -100,9 +110,11 @@ def _plain(size: Any) -> Any:
     return [list(point) for point in size] if isinstance(size, tuple) else size
 
 
-def _fixed(size: Any) -> Any:
-    """A size as a hashable value; a point without a radius is not rounded."""
-    return tuple((*point, 0.0)[:3] for point in size) if isinstance(size, list) else size
+def _fixed(name: str, size: Any) -> Any:
+    """A size as a hashable value; a point of a profile without a radius is not rounded."""
+    if not isinstance(size, list):
+        return size
+    return tuple((*point, 0.0)[:3] if name == "profile" else tuple(point) for point in size)
 
 
 __all__ = [

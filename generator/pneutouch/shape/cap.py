@@ -1,11 +1,24 @@
-"""Spherical caps: less than half of a sphere over the base."""
+"""Parts of spheres: caps, less than half of a sphere over the base, and hemispheres with a wall that varies."""
 
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from pneutouch.shape.even import EvenDome
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.shape.meridian import Arc
+
+
+@dataclass(frozen=True, slots=True)
+class VaryingHemisphere(EvenDome):
+    """A hemisphere whose wall varies along its arc."""
+
+    key, adjective = Hemisphere.key, Hemisphere.adjective
+
+    @property
+    def line(self) -> tuple[Arc, ...]:
+        """A quarter of the circle."""
+        return (Arc((0.0, 0.0), self.inner_radius, 0.0, 0.5 * math.pi, ""),)
 
 
 @dataclass(frozen=True, slots=True)

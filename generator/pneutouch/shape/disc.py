@@ -37,20 +37,22 @@ class Disc(FlatDome):
         stops = [self.inner_radius, *([self._foot, self.boss_radius] if self.boss_height else []), 0.0]
         return tuple(Line((a, 0.0), (b, 0.0), "") for a, b in pairwise(stops))
 
-    @property
-    def outer(self) -> tuple[Segment, ...]:
-        """The flat face around the boss, its flank and its top."""
+    def walls(self) -> tuple[tuple[Segment, ...], tuple[Segment, ...]]:
+        """The flat face, and opposite it that around the boss, its flank and its top."""
+        inner, outer = EvenDome.walls(self)
         if not self.boss_height:
-            return self._face(self.wall_thickness, OUTER_WALL)
+            return inner, outer
         top = self.boss_height
         corners: list[Point] = [(self.inner_radius, 0.0), (self._foot, 0.0), (self.boss_radius, top), (0.0, top)]
-        return tuple(Line(a, b, OUTER_WALL) for a, b in pairwise(corners))
+        return inner, tuple(Line(a, b, OUTER_WALL) for a, b in pairwise(corners))
 
     @property
     def fault(self) -> tuple[str, str] | None:
         """A boss has both sizes, and leaves a free ring of wall around it."""
         if bool(self.boss_radius) != bool(self.boss_height):
             return "boss_height", "a boss has a radius and a height: give boss_radius_mm and boss_height_mm, or neither"
+        if self.boss_height and self.wall_stations:
+            return "wall_stations", "a disc has a boss or a wall that varies, not both"
         free = self.inner_radius - self._foot
         if self.boss_height and free < self.wall_thickness:
             return "boss_radius", (

@@ -48,14 +48,19 @@ class DomeShape(ABC):
 
     @property
     def further(self) -> str:
-        """The sizes besides radius and wall in words, such as "rise 4.5 mm"; empty without any."""
+        """The sizes of the inner face and a boss in words, such as "rise 4.5 mm"; empty without any."""
         sizes = [(field.name.replace("_", " "), getattr(self, field.name)) for field in fields(self)[2:]]
         words = [
             f"{size} {name}" if isinstance(size, int) else f"{name} {size:g} mm"
             for name, size in sizes
-            if isinstance(size, int | float) and size
+            if isinstance(size, int | float) and size and name != "root fillet"
         ]
         return ", ".join(words)
+
+    @property
+    def stated_wall(self) -> str:
+        """Thickness of the wall in words."""
+        return f"{self.wall_thickness:g} mm"
 
     @property
     def plain(self) -> "DomeShape":
@@ -123,6 +128,11 @@ class DomeShape(ABC):
     @property
     def fault(self) -> tuple[str, str] | None:
         """Field that makes the shape impossible, and the reason in words; None if it can be made."""
+        return None
+
+    @property
+    def wall_fault(self) -> tuple[str, str] | None:
+        """As `fault`, of a wall that varies and of a fillet."""
         return None
 
     @property

@@ -87,4 +87,6 @@ def no_hemisphere(shape: DomeShape) -> str | None:
     """Reason why formulas and tables for a hemisphere do not cover ``shape``; None if it is a hemisphere."""
     if isinstance(shape, FilletedHemisphere):
         return f"the dome has a fillet of {shape.root_fillet:g} mm at its root"
+    if shape.key == Hemisphere.key and getattr(shape, "wall_stations", None):
+        return "the wall of the dome varies along its arc"
     return None if type(shape) is Hemisphere else f"the dome is no hemisphere: its shape is {shape.key}"

@@ -89,10 +89,10 @@ class Profile(FlatDome):
             yield f"the profile is not level on the axis, at z = {points[-1][1]:.4g} mm: its tip would be sharp"
         yield from self._crossings("inner", self.inner)
         for piece in self.line:
-            if isinstance(piece, Arc) and piece.last < piece.first and piece.radius <= self.wall_thickness:
+            if isinstance(piece, Arc) and piece.last < piece.first and piece.radius <= self.thickest:
                 yield (
                     f"at {self._place(piece.middle)} the inner face bends with a radius of {piece.radius:.3g} mm, so "
-                    f"that a wall of {self.wall_thickness:g} mm overlaps itself; take a radius greater than the wall"
+                    f"that a wall of {self.thickest:g} mm overlaps itself; take a radius greater than the wall"
                 )
         yield from self._crossings("outer", self.outer)
 

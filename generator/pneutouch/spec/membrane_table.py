@@ -22,6 +22,7 @@ def _shapes() -> list[str]:
 
 SHAPE_SIZES = (
     "root_fillet_mm",
+    "wall_stations",
     "rise_mm",
     "side_mm",
     "cavity_depth_mm",
@@ -66,6 +67,12 @@ class Membrane(SparseTable):
     )
     inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
     wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
+    wall_stations: list[list[float]] | None = Field(
+        default=None,
+        max_length=5,
+        json_schema_extra={"unit": "", "low": 0, "high": 5},
+        description="Factors of wall_thickness_mm along the arc, [share, factor] from 0, the pole, to 1, the rim.",
+    )
     root_fillet_mm: float | None = number(
         None,
         unit="mm",

@@ -106,7 +106,7 @@ class ShapeDesign:
             material=trial.resin.name,
             inner_radius_mm=dome.inner_radius,
             wall_thickness_mm=dome.wall_thickness,
-            sizes={key: size for key, size in stated_sizes(dome.shape).items() if size},
+            sizes=stated_sizes(dome.shape),
             height_mm=trial.sensor.dome.shape.outer_height,
             footprint_mm=trial.footprint,
             driving_pressure_kPa=trial.state.driving_pressure / KPA,
