@@ -119,18 +119,22 @@ class SpherePress:
 
 
 def sphere(ratio: float, tau: float, arc: int = 144, through: int = 2) -> SpherePress:
-    """A sphere of mid-surface radius 1 mm, wall ``ratio`` mm and modulus 1 MPa under a small ball.
+    """A sphere of mid-surface radius 1 mm, wall ``ratio`` mm and modulus 1 MPa under a small ball."""
+    mesh = dome(Hemisphere(1.0 - 0.5 * ratio, ratio), arc=arc, through=through, base_ratio=40.0, slides=True)
+    return pressed_shell(SolidModel(mesh, neo_hookean(1.0, POISSON)), ratio, tau)
+
+
+def pressed_shell(solid: SolidModel, ratio: float, tau: float) -> SpherePress:
+    """A sphere of mid-surface radius 1 mm, or a cap of it at no pressure, under a small ball.
 
     The travel is that of the inner surface: the ball's local indentation of the wall is no part of the shell's. The
     pressure is held; radius and wall of the shell theories are those of the inflated sphere.
     """
     young = 2.0 * (1.0 + POISSON)
     bending = np.sqrt(12.0 * (1.0 - POISSON**2))
-    mesh = dome(Hemisphere(1.0 - 0.5 * ratio, ratio), arc=arc, through=through, base_ratio=40.0, slides=True)
-    solid = SolidModel(mesh, neo_hookean(1.0, POISSON))
     free = state_at(solid, 4.0 * tau * young * ratio**2 / bending)
     run = indent(solid, free, PressSettings(0.04 * ratio, steps=8, dead_volume=1e9, body=ball(20.0 * ratio)))
-    wall, radius = free.outer_apex - free.inner_apex, 0.5 * (free.outer_apex + free.inner_apex)
+    wall, radius = free.outer_apex - free.inner_apex, 0.5 * (free.outer_apex + free.inner_apex) if tau else 1.0
     # sqrt(E h B) is E h^2 over the same number as of the pressure.
     pressed = float(free.pressure * radius**2 * bending / (4.0 * young * wall**2))
     thin = 8.0 * young * wall**2 / (bending * radius) * point_stiffness(pressed)

@@ -1,7 +1,7 @@
 """The solid against exact results, CalculiX and the paper's table: ``python -m benchmarks.validation``.
 
 Writes docs/background/validation.json. Friction and contact off the axis in three dimensions have modules of their own
-(`calculix_friction_half`, `off_axis_calculix`); with ``stored`` only what all of them come to is reduced anew.
+(`calculix_friction_half`, `off_axis_calculix`); with ``stored`` only what all of them come to is reduced anew, and with names of `PARTS` these are measured anew.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from benchmarks.contact_references import balls
 from benchmarks.methods import solid_limit
 from benchmarks.paper import OTHER_SOURCE, Cell, table_s1
 from benchmarks.scenes import PAPER, Scene
+from benchmarks.shape_calculix import shapes_calculix
+from benchmarks.shape_references import shapes
 from benchmarks.store import LIBRARY, store, stored
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
@@ -168,7 +170,7 @@ def incompressibility() -> list[list[float]]:
     return rows
 
 
-def dead_volumes(library: Library) -> dict[str, Any]:
+def dead_volumes(library: Library = LIBRARY) -> dict[str, Any]:
     """Table S1 with the one unknown, the dead volume, varied: relative errors of the solid by column."""
     runs: dict[str, list[Cell]] = {f"{v:g} mL": table_s1(library, v) for v in DEAD_VOLUMES_ML}
     runs["as printed"] = table_s1(library, flange=PRINTED_FLANGE)
@@ -184,19 +186,9 @@ def dead_volumes(library: Library) -> dict[str, Any]:
     return {"columns": list(runs), "rows": rows}
 
 
-def measure() -> dict[str, Any]:
-    """All numbers of the page but those of CalculiX in three dimensions."""
-    return {
-        "spheres": spheres(),
-        "thin_walls": thin_walls(),
-        "pressed_membrane": pressed_membrane(),
-        "balls": balls(),
-        "refinement": refinement(),
-        "incompressibility": incompressibility(),
-        "invariances": invariances(),
-        "calculix": calculix(),
-        "dead_volumes": dead_volumes(LIBRARY),
-    }
+_WORK = spheres, thin_walls, pressed_membrane, balls, refinement, incompressibility, invariances, calculix
+PARTS = {work.__name__: work for work in (*_WORK, dead_volumes, shapes, shapes_calculix)}
+"""All numbers of the page but those of CalculiX in three dimensions."""
 
 
 def greatest(rows: list[list[float]]) -> list[float]:
@@ -218,13 +210,24 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
     inflation = [abs(limit["calculix_kPa"] / limit["solid_kPa"] - 1)] if limit else []
     membrane = [abs(pressure / 1.57537 - 1), abs(height / 1.69 - 1)]
     shell = [max(map(abs, balls["shell"][-1]["sheared"]))]
+    forms = data["shapes"]
+    plates = [row[3] for row in forms["plates"] if row[1] <= 0.02]
+    bent = [[row[-1]] for row in forms["far_bent"]], [[row[-1]] for row in forms["hencky"]]
+    caps = [[one[key][1] / one[key][0] - 1.0 for key in ("limit", "first")] for one in forms["snaps"]]
+    other = [[*row["free"], max(abs(one[2]) for one in row["press"])] for row in data["shapes_calculix"]]
     rows = [
         ("thick spheres", "exact", "limit pressure, stretch", greatest(spheres)),
         ("thin membrane, inflated", "exact", "limit pressure, height (both extrapolated to no wall)", membrane),
         ("thin membrane, pressed by a plate", "exact", "cavity pressure, force, contact radius", greatest(pressed)),
         ("Hertz, smallest contact", "exact", "force", [abs(balls["hertz"][-1][1])]),
         ("pressurised shell with shear, wall of 0.0025 R", "exact", "first stiffness under a ball", shell),
+        ("clamped plates of 0.02 and 0.01 a", "exact", "small deflection, with shear", greatest([[x] for x in plates])),
+        ("plate bent far; Hencky's membrane", "exact", "deflection of each", [greatest(one)[0] for one in bent]),
+        ("flat membrane of 0.005 a", "exact", "limit pressure, height", list(map(abs, forms["flat"][-1]["limit"]))),
+        ("shallow cap of 0.0025 R", "exact", "first stiffness under a ball", [abs(forms["cap_ball"][-1][2])]),
+        ("seven shallow caps, emptied", "exact", "limit pressure, first loss of stability", greatest(caps)),
         ("CalculiX, inflation", "program", "limit pressure", inflation),
+        ("CalculiX, ellipsoid and thimble", "program", "height, volume, force", greatest(other) if other else []),
         ("CalculiX in 3D, friction", "program", "force, pressure rise", three),
         ("CalculiX in 3D, off the axis", "program", "force, sideways force, pressure rise", aside),
         ("Table S1 of the paper, twelve cells", "measured", "sensitivity", data["dead_volumes"]["medians"][:1]),
@@ -233,7 +236,8 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def main(*words: str) -> None:
-    data = stored("validation") if "stored" in words else measure()
+    data = stored("validation") if words else {}
+    data.update({name: work() for name, work in PARTS.items() if name in words or not words})
     cells = [row["errors"] for row in data["dead_volumes"]["rows"] if row["resin"] != OTHER_SOURCE]
     data["dead_volumes"]["medians"] = [statistics.median(map(abs, column)) for column in zip(*cells, strict=True)]
     data["references"] = references(data)

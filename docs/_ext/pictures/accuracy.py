@@ -222,11 +222,11 @@ def validation() -> str:
     """Greatest difference of the solid from each reference."""
     found = stored("validation")["references"][::-1]
     looks = {
-        "exact": ("closed form or exact membrane", MARKERS[0], ACCENT),
+        "exact": ("closed form or theory", MARKERS[0], ACCENT),
         "program": ("CalculiX", MARKERS[1], INK),
         "measured": ("measurement (median)", MARKERS[3], MUTED),
     }
-    with figure(165, 82) as drawn:
+    with figure(165, 112) as drawn:
         ax = drawn.subplots()
         for k, one in enumerate(found):
             _, marker, colour = looks[one["kind"]]

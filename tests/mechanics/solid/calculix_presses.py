@@ -35,18 +35,40 @@ _HALF_TURN = 180.0
 """Wedges of two degrees, into which CalculiX turns axisymmetric cells, in a turn."""
 
 
-def solid_press(sensor: Sensor, friction: float, depth: float, cells: tuple[int, int], steps: int) -> IndentationPath:
-    """The solid on the same eight-node cells with reduced integration, its gas shut in at ambient pressure."""
+def solid_press(
+    sensor: Sensor, friction: float, depth: float, cells: tuple[int, int], steps: int, driving: float = 0.0
+) -> IndentationPath:
+    """The solid on the same eight-node cells with reduced integration, its gas shut in at a gauge pressure (MPa)."""
     mesh = dome(sensor.dome.shape, *cells, order=8)
     solid = SolidModel(mesh, neo_hookean(sensor.wall.shear_modulus, sensor.wall.poisson_ratio))
     settings = PressSettings(depth, steps, 2 * sensor.protocol.plate_radius, friction=friction, gauge_range=np.inf)
-    return indent(solid, state_at(solid, 0.0), settings)
+    return indent(solid, state_at(solid, driving), settings)
 
 
-def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Array, cells: tuple[int, int]) -> Array:
+def calculix_inflated(sensor: Sensor, pressure: float, cells: tuple[int, int]) -> tuple[float, float]:
+    """Height of the apex inside (mm) and volume (mm3) at a gauge pressure (MPa)."""
+    mesh = dome(sensor.dome.shape, *cells, order=8)
+    step = ["*STEP,NLGEOM,INC=200", "*STATIC", "0.2,1.,1e-4,0.25", "*DLOAD", f"INNER,P4,{pressure:.12g}"]
+    shown = ["*NODE PRINT,NSET=ALL,FREQUENCY=1000", "U", "*END STEP"]
+    places = mesh.nodes.copy()
+    for words in map(str.split, run_calculix([*calculix_model(sensor, *cells), *step, *shown]).prints):
+        if len(words) == 4 and words[0].isdigit() and int(words[0]) <= len(places):
+            places[int(words[0]) - 1] += np.array(words[1:3], dtype=np.float64)
+    solid = SolidModel(mesh, neo_hookean(1.0, 0.49))
+    return float(places[mesh.inner_apex, 1]), solid.cavity.volume(places / mesh.length) * mesh.length**3
+
+
+def calculix_press(
+    sensor: Sensor, friction: float, depths: Array, pressures: Array, cells: tuple[int, int], top: float | None = None
+) -> Array:
     """Force on the plate (N) at depths (mm, rising, the first 0) with gauge pressures (MPa) given there; nan where
-    CalculiX did not converge."""
-    top, half = sensor.dome.inner_radius + sensor.dome.wall_thickness, sensor.protocol.plate_radius
+    CalculiX did not converge.
+
+    ``top``: height (mm) at which the plate waits for the dome to be inflated; None: that of the dome at rest."""
+    half = sensor.protocol.plate_radius
+    top = sensor.dome.shape.outer_height if top is None else top
+    begin = 1.0 if pressures[0] else 0.0
+    times = (begin + depths / depths[-1]).tolist()
     arc, through = cells
     model = calculix_model(sensor, arc, through)
     outer = range(through, arc * through + 1, through)
@@ -77,14 +99,16 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
         "*CONTACT PAIR,INTERACTION=DRY,TYPE=SURFACE TO SURFACE",
         "SKIN,UNDERSIDE",
         "*AMPLITUDE,NAME=DOWN",
-        f"0.,0.,1.,{-depths[-1]:.12g}",
+        *(["0.,0."] if begin else []),
+        f"{begin:.12g},0.,{begin + 1:.12g},{-depths[-1]:.12g}",
         "*AMPLITUDE,NAME=GAS",
-        *(f"{d / depths[-1]:.12g},{p:.12g}" for d, p in zip(depths, pressures, strict=True)),
+        *(["0.,0."] if begin else []),
+        *(f"{t:.12g},{p:.12g}" for t, p in zip(times, pressures, strict=True)),
         "*TIME POINTS,NAME=SHOWN",
-        *(f"{d / depths[-1]:.12g}" for d in depths[1:]),
+        *(f"{t:.12g}" for t in times[1:]),
         "*STEP,NLGEOM,INC=2000",
         "*STATIC",
-        f"{_INCREMENT},1.,1e-5,{_INCREMENT}",
+        f"{_INCREMENT},{begin + 1:.12g},1e-5,{_INCREMENT}",
         "*BOUNDARY,AMPLITUDE=DOWN",
         "PLATE,2,2,1.",
         "*BOUNDARY",
@@ -95,16 +119,17 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
         "CF",
         "*END STEP",
     ]
-    return _forces(run_calculix(deck).prints, depths)
+    return _forces(run_calculix(deck).prints, depths, begin)
 
 
-def _forces(lines: list[str], depths: Array) -> Array:
-    """Vertical force of the whole turn at every depth, from the total contact forces printed for the wedge."""
+def _forces(lines: list[str], depths: Array, begin: float) -> Array:
+    """Vertical force of the whole turn at every depth, from the total contact forces printed for the wedge; the press
+    begins at the time ``begin``."""
     out = np.full(depths.size, np.nan)
     out[0] = 0.0
     for k, line in enumerate(lines):
         if line.startswith(" statistics for slave set"):
-            depth = depths[-1] * float(line.split()[-1])
+            depth = depths[-1] * (float(line.split()[-1]) - begin)
             near = np.flatnonzero(np.abs(depths - depth) < 1e-6 * depths[-1])
             out[near] = -360.0 / _WEDGE * float(lines[k + 4].split()[1])
     return out

@@ -32,6 +32,7 @@ from pneutouch.mechanics.solid.friction_system import ContactSystem, OneSidedBlo
 from pneutouch.mechanics.solid.newton import (
     GAIN,
     RESIDUAL,
+    STALLED,
     NewtonFailure,
     SolidScene,
     SolverState,
@@ -39,6 +40,7 @@ from pneutouch.mechanics.solid.newton import (
     evaluate,
     full_tangent,
     line_search,
+    rounding,
     tangent,
 )
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation
@@ -244,13 +246,15 @@ class FrictionSolver:
         state = evaluate(self.scene, x)
         if state is None:
             return NewtonFailure("the starting guess turns the wall inside out")
-        here, left, halved, iteration = self.hold(state), np.inf, False, 0
+        here, left, share, iteration = self.hold(state), np.inf, 1.0, 0
         while True:
             size = float(np.linalg.norm(here.residual))
             energy_scale = here.state.local.energy + here.scale * self.solid.wall
-            if size <= RESIDUAL * here.scale and left <= GAIN * energy_scale:
+            if left <= GAIN * energy_scale and (
+                size <= RESIDUAL * here.scale or (share > STALLED and size <= rounding(self.scene, here.state))
+            ):
                 return SlidingResult(here, iteration)
-            if iteration >= max_iterations and not halved:
+            if iteration >= max_iterations and share > _BALANCES:
                 return NewtonFailure(f"residual {size / here.scale:.1e} after {iteration} iterations", iteration)
             step = self.direction(here, kept if iteration == 0 else None)
             slope = float(step @ here.residual)
@@ -263,7 +267,7 @@ class FrictionSolver:
             if moved is None:
                 return NewtonFailure("no step along the Newton direction lowers the energy", iteration)
             share = float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)
-            here, left, halved = moved, -slope * share**2, share <= _BALANCES
+            here, left = moved, -slope * share**2
             iteration += 1
 
     def hold(self, state: SolverState) -> HeldState:

@@ -65,6 +65,7 @@ def line_search(
 RESIDUAL = 1.0e-9
 #: and the energy still to be gained, estimated from the last step, is below this share of the energy scale.
 GAIN = 1.0e-14
+STALLED = 0.1  #: A residual of which a step leaves more than this share may be rounding alone.
 MAX_ITERATIONS = 40
 #: Number of rounds in which the set of touching points is settled inside one quadratic model.
 SETTLING = 10
@@ -157,21 +158,8 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
         load += float(np.linalg.norm(there.gradient))
         noise += term.noise
     scale = load + 1.0e-3 * solid.wall + 10.0 * noise / RESIDUAL
-    energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy)
-    energy += sum(there.energy for there in terms)
-    return SolverState(
-        x=x,
-        energy=energy,
-        residual=inner + push,
-        inner=inner,
-        scale=scale,
-        local=local,
-        volume=volume,
-        by_volume=by_volume,
-        filling=filling,
-        touch=touch,
-        terms=terms,
-    )
+    energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy) + sum(t.energy for t in terms)
+    return SolverState(x, energy, inner + push, inner, scale, local, volume, by_volume, filling, touch, terms)
 
 
 def tangent(scene: SolidScene, state: SolverState) -> Array:
@@ -241,10 +229,9 @@ def stability(
 ) -> NewtonDirection:
     """Step -(K + c g g')^-1 `load` at a converged state, and its stability; `load` (size,), None: the residual.
 
-    ``band``: the full tangent K, None: computed.
-
-    K can be indefinite and K + c g g' definite, since the filling stiffens one mode: negatives(K + c g g') =
-    negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
+    ``band``: the full tangent K, None: computed. K can be indefinite and K + c g g' definite, since the filling
+    stiffens one mode: negatives(K + c g g') = negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered
+    matrix.
     """
     band = full_tangent(scene, state) if band is None else band
     newton = rank_one(state, band, state.residual if load is None else load)
@@ -300,10 +287,11 @@ def minimise(
     state = evaluate(scene, x)
     if state is None:
         return NewtonFailure("the starting guess turns the wall inside out")
-    left, before = np.inf, None
+    left, share, before, size = np.inf, 0.0, None, float(np.linalg.norm(state.residual))
     for iteration in range(max_iterations):
-        size = float(np.linalg.norm(state.residual))
-        if size <= RESIDUAL * state.scale and left <= GAIN * (state.local.energy + state.scale * scene.solid.wall):
+        if left <= GAIN * (state.local.energy + state.scale * scene.solid.wall) and (
+            size <= RESIDUAL * state.scale or (share > STALLED and size <= rounding(scene, state))
+        ):
             return NewtonResult(state, iteration)
         if before is not None:
             mixed = scene.solid.mixed(before.local, state.local, state.x - before.x)
@@ -318,10 +306,20 @@ def minimise(
         if moved is None:
             return NewtonFailure("no step along the Newton direction lowers the energy")
         # The gain of a Newton step is proportional to the square of the residual at its start.
-        before, state, left = state, moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
-    return NewtonFailure(
-        f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
-    )
+        last, size = size, float(np.linalg.norm(moved.residual))
+        share = size / max(last, 1.0e-300)
+        before, state, left = state, moved, -slope * share**2
+    return NewtonFailure(f"residual {size / state.scale:.1e} after {max_iterations} iterations")
+
+
+def rounding(scene: SolidScene, state: SolverState) -> float:
+    """Norm of the residual that rounded positions leave: of the stiffness times the rounding error of each of them.
+    Newton's method stalls at 0.2 to 0.5 of it, whatever shape, wall and Poisson's ratio are."""
+    band, dofs = tangent(scene, state), scene.solid.dofs
+    place = np.zeros(band.shape[1])
+    place[dofs[dofs >= 0]] = state.x[dofs >= 0]
+    square = band[0] ** 2 + 2.0 * (band[1:] ** 2).sum(axis=0)
+    return float(np.finfo(np.float64).eps * np.sqrt(square @ place**2))
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
