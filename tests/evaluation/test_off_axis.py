@@ -234,6 +234,6 @@ def test_a_fit_and_the_search_refuse_it_by_its_key(key, value):
     with pytest.raises(InputError, match="central and level") as caught:
         check_central(load_scene("paper-dome", changes))
     assert (caught.value.key, caught.value.value) == (key, value)
-    with pytest.raises(InputError, match="atlas does not cover") as caught:
+    with pytest.raises(InputError, match="covers") as caught:
         check_fitted(load_scene("paper-dome", changes), _sensor(changes))
     assert (caught.value.key, caught.value.value) == (key, value)

@@ -19,7 +19,7 @@ from pneutouch.mechanics.atlas.coverage import outside_fit
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.parts import assemble
 from pneutouch.printability.measure.mould import cavity_match
-from pneutouch.shape import FilletedHemisphere, Hemisphere
+from pneutouch.shape import Hemisphere, shape_of
 
 FILLET, DEPTH = "membrane.root_fillet_mm", "indentation.depth_mm"
 PRESSURES = np.array([0.0, 0.012])
@@ -31,7 +31,7 @@ def filleted(design, fillet, **changes):
 
 @given(st.floats(1, 100), st.floats(0.05, 0.6), st.floats(0.01, 0.5))
 def test_the_faces_are_smooth_and_reach_from_the_base_to_the_pole(radius, wall, fillet):
-    shape = FilletedHemisphere(radius, wall * radius, fillet * radius)
+    shape = shape_of("hemisphere", radius, wall * radius, {"root_fillet": fillet * radius})
     foot, dome = shape.outer
     assert foot.start == pytest.approx((shape.outer_radius, 0.0), abs=1e-9 * radius)
     assert foot.end == pytest.approx(dome.start, abs=1e-9 * radius)

@@ -17,7 +17,7 @@ from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, moved, unit_step
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected.figures import state_logs
-from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, TREND
+from pneutouch.mechanics.models.accuracy import TREND, limit_discretisation
 from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.mechanics.models.solid import MODEL, solid_result
 from pneutouch.mechanics.prediction import SensorPrediction, SensorState
@@ -87,7 +87,7 @@ def _budget(
         scene.printer,
         near_paper=is_near_paper(sensor),
         errors=model_errors(scene.membrane_material, materials),
-        numerical={SENSITIVITY_KEY: stated_error("solid", sensor), _LIMIT_KEY: LIMIT_DISCRETISATION},
+        numerical={SENSITIVITY_KEY: stated_error("solid", sensor), _LIMIT_KEY: limit_discretisation(sensor)},
         calibration=scene.calibration,
         anywhere=scene.design.contact.anywhere,
     )

@@ -20,11 +20,10 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, TREND
+from pneutouch.mechanics.models.accuracy import TREND, limit_discretisation
 from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
-from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.wording import data_of, rounded
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
     from pneutouch.mechanics.uncertainty.propagate import Budget
     from pneutouch.mechanics.uncertainty.source import UncertaintySource
+    from pneutouch.spec.calibration import SensorCalibration
 
 GAP, STEEP_GAP = 0.2, 0.45
 """Greatest distance of d ln sensitivity / d ln modulus, and by wall, of the even wall from those of the graded solid,
@@ -126,7 +126,7 @@ def spread(
             of_friction = friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=of_friction)
     batch = batch_of(under_plate(sensor), pressures) if batch is None else batch
-    numerical = {SENSITIVITY_KEY: stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
+    numerical = {SENSITIVITY_KEY: stated_error(model, sensor), "limit_pressure_kPa": limit_discretisation(sensor)}
     of_sensor = sources(
         batch,
         material,

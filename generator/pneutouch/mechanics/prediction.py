@@ -108,6 +108,10 @@ class Held(NamedTuple):
     sealed: bool
 
 
+LEAST_RANGE = 1e-3
+"""Least range, mm, that has figures: our choice; a wide plate lies on the flange of a flat disc from the start."""
+
+
 @dataclass(frozen=True, slots=True)
 class SensorState:
     """The inflated dome at one driving pressure, and its loading curve: arrays of one length (mm, N, MPa).
@@ -147,10 +151,13 @@ class SensorState:
     def judged(self) -> "SensorState":
         """The state, without figures and with an event that gives the reason if its curve falls or is no line."""
         f = self.figures
-        if f is None or (f.sensitivity > 0.0 and f.r_squared >= STRAIGHT):
+        ranges = self.range_end >= LEAST_RANGE
+        if f is None or (f.sensitivity > 0.0 and f.r_squared >= STRAIGHT and ranges):
             return self
         why = "the pressure does not rise with the force"
-        if f.sensitivity > 0.0:
+        if not ranges:
+            why = f"the range ends within {1000 * LEAST_RANGE:g} um of first contact"
+        elif f.sensitivity > 0.0:
             why = f"a straight line explains {f.r_squared:.0%} of the pressure's changes"
         event = Event(NO_LINE, self.range_end, False, f"{why}, so no sensitivity, stiffness or force range is given")
         return replace(self, figures=None, events=(*self.events, event))

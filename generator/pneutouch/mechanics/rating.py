@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -13,11 +13,13 @@ from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
-from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
+
+if TYPE_CHECKING:
+    from pneutouch.spec.calibration import SensorCalibration
 
 RATED_SHARE = 0.9
 """Rated pressure over the lower end of the lowest limit: the dome grows fast near the limit point."""
@@ -159,7 +161,7 @@ def ratings(
     sensors: Sequence[Sensor],
     material: Material,
     printer: Printer,
-    calibration: SensorCalibration | None = None,
+    calibration: "SensorCalibration | None" = None,
     numerical: float = LIMIT_ERROR,
 ) -> list[Rating]:
     """Ratings of n sensors of ``material`` from ``printer``, from the nominal ``limits`` that a model gives, in one

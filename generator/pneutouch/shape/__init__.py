@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.shape.dome import DomeShape
-from pneutouch.shape.hemisphere import FilletedHemisphere, Hemisphere
+from pneutouch.shape.hemisphere import Hemisphere
 
 SHAPES: dict[str, str | type[DomeShape]] = {
     "hemisphere": Hemisphere,
@@ -95,7 +95,7 @@ def _kind(key: str, sizes: Mapping[str, Any]) -> type[DomeShape]:
     """Class of a shape; a hemisphere has others with a fillet and with a wall that varies."""
     if key != Hemisphere.key or not sizes:
         return _loaded(SHAPES[key])
-    return _loaded("cap.VaryingHemisphere") if "wall_stations" in sizes else FilletedHemisphere
+    return _loaded("cap.FreeHemisphere")
 
 
 def _loaded(shape: str | type[DomeShape]) -> type[DomeShape]:
@@ -120,7 +120,6 @@ def _fixed(name: str, size: Any) -> Any:
 __all__ = [
     "SHAPES",
     "DomeShape",
-    "FilletedHemisphere",
     "Hemisphere",
     "ShapeError",
     "key_of",

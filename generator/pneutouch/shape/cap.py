@@ -1,17 +1,18 @@
 """Parts of spheres: caps, less than half of a sphere over the base, and hemispheres with a wall that varies."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.even import EvenDome
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.shape.meridian import Arc
 
 
 @dataclass(frozen=True, slots=True)
-class VaryingHemisphere(EvenDome):
-    """A hemisphere whose wall varies along its arc."""
+class FreeHemisphere(EvenDome):
+    """A hemisphere with a fillet at its root, or a wall that varies along its arc."""
 
     key, adjective = Hemisphere.key, Hemisphere.adjective
 
@@ -19,6 +20,13 @@ class VaryingHemisphere(EvenDome):
     def line(self) -> tuple[Arc, ...]:
         """A quarter of the circle."""
         return (Arc((0.0, 0.0), self.inner_radius, 0.0, 0.5 * math.pi, ""),)
+
+    @property
+    def plain(self) -> DomeShape:
+        """The shape without the fillet at its root: of one wall the hemisphere of tables and formulas."""
+        if not self.wall_stations:
+            return Hemisphere(self.inner_radius, self.wall_thickness)
+        return replace(self, root_fillet=0.0) if self.root_fillet else self
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,7 +48,7 @@ class EvenDome(DomeShape):
         """Pieces of the inner face from (`inner_radius`, 0) to the pole, each going on in the direction before."""
 
     @property
-    def plain(self) -> "EvenDome":
+    def plain(self) -> DomeShape:
         """The shape without the fillet at its root."""
         return replace(self, root_fillet=0.0) if self.root_fillet else self
 

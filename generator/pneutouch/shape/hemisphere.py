@@ -1,7 +1,6 @@
 """The paper's dome: inner and outer face are hemispheres."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,47 +45,11 @@ class Hemisphere(DomeShape):
         return np.asarray(np.sin(_QUARTER * arc))
 
 
-@dataclass(frozen=True, slots=True)
-class FilletedHemisphere(DomeShape):
-    """A hemisphere whose outer face runs into the top of its flange by an arc of the radius ``root_fillet``, mm.
-
-    The arc touches the sphere and, at `outer_radius`, the base plane.
-    """
-
-    root_fillet: float
-    key, adjective = Hemisphere.key, Hemisphere.adjective
-
-    @property
-    def plain(self) -> Hemisphere:
-        """The same hemisphere with a sharp corner at its root."""
-        return Hemisphere(self.inner_radius, self.wall_thickness)
-
-    @property
-    def inner(self) -> tuple[Arc, ...]:
-        """The inner half sphere, in two pieces: opposite the fillet and above it."""
-        lean, centre, radius = self._lean, (0.0, 0.0), self.inner_radius
-        return Arc(centre, radius, 0.0, lean, INNER_WALL), Arc(centre, radius, lean, _QUARTER, INNER_WALL)
-
-    @property
-    def outer(self) -> tuple[Arc, ...]:
-        """The fillet, then the outer half sphere above it."""
-        sphere, fillet, lean = self.inner_radius + self.wall_thickness, self.root_fillet, self._lean
-        foot = (sphere + fillet) * math.cos(lean)
-        return (
-            Arc((foot, fillet), fillet, -_QUARTER, lean - math.pi, OUTER_WALL),
-            Arc((0.0, 0.0), sphere, lean, _QUARTER, OUTER_WALL),
-        )
-
-    @property
-    def _lean(self) -> float:
-        """Angle above the base plane, rad, at which the fillet touches the sphere."""
-        return math.asin(self.root_fillet / (self.inner_radius + self.wall_thickness + self.root_fillet))
-
-
 def no_hemisphere(shape: DomeShape) -> str | None:
     """Reason why formulas and tables for a hemisphere do not cover ``shape``; None if it is a hemisphere."""
-    if isinstance(shape, FilletedHemisphere):
-        return f"the dome has a fillet of {shape.root_fillet:g} mm at its root"
-    if shape.key == Hemisphere.key and getattr(shape, "wall_stations", None):
-        return "the wall of the dome varies along its arc"
-    return None if type(shape) is Hemisphere else f"the dome is no hemisphere: its shape is {shape.key}"
+    if type(shape) is Hemisphere:
+        return None
+    if shape.key != Hemisphere.key:
+        return f"the dome is no hemisphere: its shape is {shape.key}"
+    fillet = shape is not shape.plain and "the dome has a fillet at its root"
+    return fillet or "the wall of the dome varies along its arc"

@@ -14,11 +14,11 @@ from pneutouch.arrays import Array, distinct, hermite
 from pneutouch.mechanics.events import Event, SolidEvent, range_end
 from pneutouch.mechanics.models.accuracy import (
     BODY,
-    LIMIT_DISCRETISATION,
     NOT_CHECKED,
     OBJECT_DISCRETISATION,
     SENSITIVITY_DISCRETISATION,
     discretised,
+    limit_discretisation,
     solid_assumptions,
 )
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
@@ -51,12 +51,12 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.solid.indenter import RigidObject
 
 _SUMMARY = (
-    f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
-    f"within {LIMIT_DISCRETISATION:.1%} of a refined mesh."
+    f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure within "
+    "{limit:.1%} of a refined mesh."
 )
 _OBJECT_SUMMARY = (
     f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
-    f"{LIMIT_DISCRETISATION:.1%} of a refined mesh (docs/background/contact.md)."
+    "{limit:.1%} of a refined mesh (docs/background/contact.md)."
 )
 
 
@@ -87,9 +87,10 @@ class SolidElements(SensorModel):
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Relative errors of the mesh in sensitivity and limit pressure."""
-        if sensor.protocol.body is not None:
-            return discretised(_OBJECT_SUMMARY, OBJECT_DISCRETISATION)
-        return discretised(_SUMMARY)
+        error, plate = limit_discretisation(sensor), sensor.protocol.body is None
+        summary = (_SUMMARY if plate else _OBJECT_SUMMARY).format(limit=error)
+        relative = SENSITIVITY_DISCRETISATION if plate else OBJECT_DISCRETISATION
+        return discretised(summary, relative, limit_relative=error)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions of the solid, with the numbers of waves around the axis that are checked."""

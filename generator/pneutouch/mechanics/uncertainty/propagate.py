@@ -18,12 +18,12 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
-from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
+    from pneutouch.spec.calibration import SensorCalibration
 
 STEP = 0.015
 """Relative step to each side in a central difference. For smaller steps the noise of tabulated range ends grows (the
@@ -300,7 +300,7 @@ def limit_spread(
     material: Material,
     printer: Printer,
     numerical: float,
-    calibration: SensorCalibration | None = None,
+    calibration: "SensorCalibration | None" = None,
     by_ratio: Array | float | None = None,
 ) -> LimitSpread:
     """Uncertainty of the limit pressure, as by `document.budget`, for n sensors of one resin and printer.
