@@ -28,6 +28,8 @@ _MORE_DEPTH = 1.08
 """Depth of the table over the design's."""
 _GASES = (0.25, 0.6, 1.4, 3.5)
 """Ambient pressures of the surveyed presses, over the design's."""
+_UNKNOWN = 0.1
+"""Depth beyond the surveyed one, in units of height, to which a press that did not end there counts as good."""
 _STRETCH = 100.0
 """Stretch of the volume axis: nearly equal cells."""
 
@@ -172,6 +174,16 @@ class LocalAtlas(Atlas):
         """Driving pressure over mu at the end of a sensor's table."""
         return float((weights(self.place(sensor)[None]) @ self.tables["top_pressure"])[0])
 
+    def last_travel(self, sensor: Sensor, nu: Array) -> Array:
+        """Travel (R0) at which a sensor's wall buckles in a press from inflated volumes nu (n,), or the table ends."""
+        weight, local = weights(self.place(sensor)[None]), self.local
+        lasts = np.tensordot(weight, self.tables["lasts"], axes=1)[0]
+        gas = np.log(sensor.gas.ambient_pressure / sensor.wall.shear_modulus / local.ambient)
+        starts = np.linspace(0.0, 1.0, local.starts)
+        by_gas = np.array([np.interp(nu, starts, column) for column in lasts.T])
+        unit = float((weight @ self.tables["unit"])[0])
+        return unit * np.array([np.interp(gas, np.log(_GASES), column) for column in by_gas.T])
+
     @property
     def softest(self) -> float:
         """Least ambient pressure over mu inside the box."""
@@ -202,14 +214,14 @@ def _box(local: LocalRecipe, lowest: float, beyond: float) -> AtlasRecipe:
     )
 
 
-def recipe_of(sensor: Sensor, greatest_pressure: float, fingerprint: str = "") -> LocalRecipe:
-    """Recipe of a table around a sensor that is driven up to a pressure, MPa."""
+def recipe_of(sensor: Sensor, greatest_pressure: float, fingerprint: str = "", step: float = STEP) -> LocalRecipe:
+    """Recipe of a table around a sensor that is driven up to a pressure, MPa; ``step`` as in `STEP`."""
     names, size, mu = varied(sensor), sensor.dome.inner_radius, sensor.wall.shear_modulus
     return LocalRecipe(
         shape=sensor.dome.shape.key,
         fixed=fixed_sizes(sensor),
         names=names,
-        centre=tuple(map(rounded, _middle(sensor, names))),
+        centre=tuple(map(rounded, _middle(sensor, names, step))),
         poisson_ratio=sensor.wall.poisson_ratio,
         base=base_sizes(sensor),
         ambient=rounded(sensor.gas.ambient_pressure / mu),
@@ -217,6 +229,7 @@ def recipe_of(sensor: Sensor, greatest_pressure: float, fingerprint: str = "") -
         pressure=rounded(greatest_pressure / mu),
         depth=rounded(_MORE_DEPTH * sensor.protocol.depth / size),
         fingerprint=fingerprint,
+        step=step,
     )
 
 
@@ -231,15 +244,15 @@ def base_sizes(sensor: Sensor) -> tuple[float, ...]:
     return () if base is None else tuple(rounded(x / sensor.dome.inner_radius) for x in asdict(base).values())
 
 
-def _middle(sensor: Sensor, names: tuple[str, ...]) -> list[float]:
+def _middle(sensor: Sensor, names: tuple[str, ...], step: float) -> list[float]:
     """Sizes (R0) in the middle of a table: the sensor's, or a step away from a size beyond which the shape is none."""
     sizes = ratios(sensor, names) * sensor.dome.inner_radius
     for number in range(len(names)):
         for sign in (1.0, -1.0):
             other = sizes.copy()
-            other[number] *= np.exp(sign * STEP)
+            other[number] *= np.exp(sign * step)
             if sensor.replace(**dict(zip(names, other.tolist(), strict=True))).dome.shape.fault is not None:
-                sizes[number] *= np.exp(-sign * STEP)
+                sizes[number] *= np.exp(-sign * step)
     return [float(x) for x in sizes / sensor.dome.inner_radius]
 
 
@@ -250,8 +263,9 @@ def build(sensor: Sensor, recipe: LocalRecipe, progress: Progress = lambda done,
     """
     cells, _ = cell_counts(sensor.dome.shape, None, None)
     surveys: list[Survey] = []
-    inflations, limited, units = [], [], []
+    inflations, limited, units, lasts = [], [], [], []
     swell: float | None = None
+    deepest = 0.0
     plan = SurveyPlan(recipe.starts, recipe.depths, tuple(gas * recipe.ambient for gas in _GASES), recipe.dead)
     places = offsets(len(recipe.names))
     for number, place in enumerate(places):
@@ -263,8 +277,11 @@ def build(sensor: Sensor, recipe: LocalRecipe, progress: Progress = lambda done,
         inflations.append(point.inflation())
         limited.append(point.run.limit is not None)
         units.append(point.unit)
+        lasts.append(point.lasts)
         progress(number + 1, len(places))
     tables = _fitted(surveys, np.array(units), recipe)
+    shape = len(places), recipe.starts, len(_GASES)
+    tables |= {"lasts": np.minimum(np.array(lasts), deepest + _UNKNOWN).reshape(shape)}
     tables |= {"inflation": np.array(inflations), "limited": np.array(limited)}
     return LocalAtlas(tables, recipe, np.array(recipe.centre) * sensor.dome.inner_radius)
 

@@ -40,7 +40,7 @@ _FLOOR = 0.15
 
 _AT_CONTACT = 4.0
 """Weight of the free dome: its fields give the limits of driving, and no force is the force at first contact."""
-_MORE_PRESSURE, _SWOLLEN, _NEAR_LIMIT = 1.2, 1.3, 0.9
+_MORE_PRESSURE, _SWOLLEN, _NEAR_LIMIT = 1.5, 1.3, 0.9
 """A table goes to a multiple of the design's greatest driving pressure, at least to that at which the cavity is a
 multiple of the unloaded one; beyond the last share of the limit point's pressure, to the limit point itself."""
 _EMPTIED, _LEAST_LEFT, _BELOW = 0.25, 0.1, 2
@@ -252,14 +252,15 @@ class SurveyedDome:
     def survey(self, swelling: float | None, deepest: float) -> Survey:
         """States of presses from volumes between rest and ``swelling`` units of volume more (None: the limit point).
 
-        Heights are in the unit of height."""
+        Heights are in the unit of height, as are ``lasts``, the depths that the presses reached (inf: all)."""
         run, rest, unit = self.run, self.rest, self.unit
         last = run.limit or run.states[-1]
         end = last.unit.volume if swelling is None else rest + swelling * self.volume_unit
         starts = [self._free(v) for v in np.linspace(rest, end, self.plan.starts)]
         starts += self._emptied(rest - min(_EMPTIED * (end - rest), _LEAST_LEFT * rest))
         presses = [self._pressed(free, gas, deepest) for free in starts for gas in self.plan.ambients]
-        nodes = [node for press in presses for node in press]
+        nodes = [node for press, _ in presses for node in press]
+        self.lasts = np.array([last for _, last in presses[: self.plan.starts * len(self.plan.ambients)]]) / unit
         return Survey(
             self.solid.wall,
             end,
@@ -303,8 +304,9 @@ class SurveyedDome:
         """Height at which a plate first touches a free state."""
         return float(free.unit.x[self.solid.mesh.outer, 1].max())
 
-    def _pressed(self, free: FreeState, ambient: float, deepest: float) -> list[PlateState]:
-        """States of one press to a depth, or to its first event, with the gas of an ambient pressure."""
+    def _pressed(self, free: FreeState, ambient: float, deepest: float) -> tuple[list[PlateState], float]:
+        """States of one press to a depth, or to its first event, with the gas of an ambient pressure; and the depth
+        that it reached."""
         plan, solid = self.plan, self.solid
         plate = Plate(self._touched(free), np.inf, solid.contact.longest)
         supply = Gas.filled(free.unit.filling.pressure, free.unit.volume, ambient, plan.dead)
@@ -312,12 +314,11 @@ class SurveyedDome:
         rim = travel_to_rim(solid, plate)
         for depth in SplineAxis(0.0, deepest, 1, 1, RECIPE.depth_stretch).even(plan.depths)[1:]:
             if depth > rim or descend(follower, plate.height - depth) is not None:
-                break
+                return follower.path, plate.height - follower.here.height
             x, touch = follower.here.state.x, follower.here.state.touch
             if touch is not None and solid.contact.footprint(x, touch).inside_gap > SEPARATION * solid.wall:
-                follower.path.pop()
-                break
-        return follower.path
+                return follower.path[:-1], plate.height - follower.path[-2].height
+        return follower.path, np.inf
 
     def inflation(self) -> Array:
         """Free inflation, (5, n): volume, heights of the inner and the outer apex, greatest stretch and pressure, at

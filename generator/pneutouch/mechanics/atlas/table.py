@@ -45,7 +45,7 @@ class AtlasPoint(NamedTuple):
 class AtlasSlices:
     """Tables at some wall ratios, numbered k: limit_volume, limit_pressure (walls,), apex (walls, volume), potential
     (walls, volume, depth), support (walls, volume cells, depth cells). rest_apex, rest_volume (walls,): outer apex
-    height and cavity of the unloaded dome. unit (walls,): unit of the depth w, R0 for the shipped atlas. fold_from
+    height and cavity of the unloaded dome. unit (walls,): unit of all depths, R0 in the shipped atlas. fold_from
     (walls,), fold_volume (walls, folds): edge of buckling, the least volume of an unbuckled wall at fold_depths, from
     depth fold_from on. fields: (walls, volume, depth, parts of all fields), with the ``columns`` of each field by its
     name."""
@@ -116,7 +116,7 @@ class AtlasSlices:
 
     def folded(self, k: Index, nu: Array, height: Array) -> Flags:
         """Mask (n,) of the states, at volumes nu and plate heights (n,), before which the wall has buckled."""
-        depth = self.rest_apex[k] - height
+        depth = (self.rest_apex[k] - height) / self.unit[k]
         deep = depth > self.fold_from[k]
         if not deep.any():
             return deep

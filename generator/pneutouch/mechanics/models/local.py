@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.errors import BeyondLimitError, ComputationError, InputError, PneutouchError
 from pneutouch.mechanics.atlas.local import (
     REACH,
+    STEP,
     LocalAtlas,
     LocalRecipe,
     Progress,
@@ -28,7 +29,7 @@ from pneutouch.mechanics.atlas.local import (
 )
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
-from pneutouch.mechanics.atlas.respond import DEPTH, GAUGE, respond, run
+from pneutouch.mechanics.atlas.respond import NEAR, run
 from pneutouch.mechanics.atlas.surveyed import INFLATED
 from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.atlas import VACUUM, FreeCurves, read_answer
@@ -40,12 +41,21 @@ from pneutouch.shape.hemisphere import Hemisphere
 
 _HELD_OUT = 20
 """Presses by the solid with which a table is compared: random designs of the neighbourhood, moduli and pressures."""
+_STEPS = (STEP, 0.5 * STEP)
+"""Steps between the surveyed designs that are tried in turn, until the error is small enough."""
+_HOPELESS = 6.0
+"""Error over the allowed one from which half a step, with an eighth of the error, will not do."""
+_UNANSWERED = 0.5
+"""Greatest share of these presses that a table need not answer."""
 _OTHER_MODULUS = 0.35
 """Greatest difference in ln modulus of these designs from the table's."""
 _SOURCES = ("shape", "mechanics/laws", "mechanics/solid", "mechanics/atlas", "mechanics/models/solid.py")
+_UP_TO = 0.97
+"""Share of the greatest driving pressure of a table up to which it is used: its edge is less exact."""
 _BASE_WITHIN = 0.1
 """Difference in the sizes of the rigid base, R0, within which a table is used."""
 
+_BUCKLES = Limitation(f"the wall would buckle within {NEAR:g} R0 more of travel", False)
 _ABOVE = Limitation("the driving pressure is above those of its table", True)
 _SHORT = Limitation("the range ends before half of the table's depth", False, beyond_error=True)
 
@@ -120,7 +130,11 @@ def outside_tables(sensor: Sensor) -> str | None:
 def _answer(sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
     table, _ = find(sensor)
     assert table is not None
-    atlas = table.atlas.of(sensor)
+    return looked_up(table.atlas.of(sensor), sensor, driving_pressures)
+
+
+def looked_up(atlas: LocalAtlas, sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
+    """Answer for a sensor at driving pressures (MPa) from tables for its sizes. Raises BeyondLimitError."""
     blown = np.clip(driving_pressures, 0.0, 0.999 * atlas.top_pressure(sensor) * sensor.wall.shear_modulus)
     passed = run(batch_of(sensor, blown), sensor.protocol.steps, atlas, FIELDS)
     fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
@@ -132,19 +146,26 @@ def _answer(sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
     result = answer.result
     if not atlas.has_limit:
         result = replace(result, limit_point=None, limits=replace(result.limits, limit_point=None))
-    return ModelAnswer(result, _limitation(sensor, atlas, driving_pressures, answer))
+    lasts = atlas.last_travel(sensor, passed.press.free)
+    return ModelAnswer(result, _limitation(sensor, atlas, driving_pressures, answer, lasts))
 
 
-def _limitation(sensor: Sensor, atlas: LocalAtlas, pressures: Array, answer: ModelAnswer) -> Limitation | None:
-    """Limitation of an answer; a range that is short for the shipped atlas is none if the table has that depth."""
+def _limitation(
+    sensor: Sensor, atlas: LocalAtlas, pressures: Array, answer: ModelAnswer, lasts: Array
+) -> Limitation | None:
+    """Limitation of an answer; a range that is short for the shipped atlas is none if the table has that depth.
+
+    ``lasts`` (n,) are the travels (R0) at which the wall buckles."""
     if (pressures < 0.0).any():
         return VACUUM
-    if (pressures >= atlas.top_pressure(sensor) * sensor.wall.shear_modulus).any():
+    if (pressures > _UP_TO * atlas.top_pressure(sensor) * sensor.wall.shear_modulus).any():
         return _ABOVE
-    given = answer.limitation
+    given, ends = answer.limitation, np.array([state.range_end for state in answer.result.states])
+    if given is None and (ends / sensor.dome.inner_radius > lasts - NEAR).any():
+        return _BUCKLES
     if given is None or given.beyond_error:
         half = 0.5 * atlas.local.depth * sensor.dome.inner_radius
-        return _SHORT if min(state.range_end for state in answer.result.states) < half else None
+        return _SHORT if ends.min() < half else None
     return given
 
 
@@ -230,16 +251,20 @@ def make(sensor: Sensor, greatest_pressure: float, progress: Progress = lambda d
     why = outside_tables(sensor)
     if why is not None:
         raise InputError(f"no local table: {why}", key="design", remedy="take `model` auto")
-    recipe = recipe_of(sensor, greatest_pressure, fingerprint())
-    atlas = build(sensor, recipe, progress)
-    table = LocalTable(table_path(recipe), atlas, measured(atlas, sensor, greatest_pressure))
-    if np.isnan(table.errors).mean() > 0.5:
-        raise ComputationError("the presses of the neighbourhood leave the table", remedy="take `model` solid")
-    if table.error > TABULATION:
-        problem = f"the table's sensitivity is up to {table.error:.1%} off the solid's, more than {TABULATION:.2%}"
-        raise ComputationError(problem, remedy="take `model` solid")
-    store(table)
-    return table
+    for step in _STEPS:
+        recipe = recipe_of(sensor, greatest_pressure, fingerprint(), step)
+        atlas = build(sensor, recipe, progress)
+        table = LocalTable(table_path(recipe), atlas, measured(atlas, sensor, greatest_pressure))
+        if np.isnan(table.errors).mean() > _UNANSWERED:
+            problem = "the wall buckles, or leaves the table, in most presses of the neighbourhood"
+            raise ComputationError(problem, remedy="take `model` solid")
+        if table.error <= TABULATION:
+            store(table)
+            return table
+        if table.error > _HOPELESS * TABULATION:
+            break
+    problem = f"the table's sensitivity is up to {table.error:.1%} off the solid's, more than {TABULATION:.2%}"
+    raise ComputationError(problem, remedy="give a smaller indentation.depth_mm, or take `model` solid")
 
 
 def store(table: LocalTable) -> None:
@@ -265,9 +290,12 @@ def measured(atlas: LocalAtlas, sensor: Sensor, greatest_pressure: float, count:
         modulus = sensor.wall.shear_modulus * float(np.exp(rng.uniform(-_OTHER_MODULUS, _OTHER_MODULUS)))
         pressure = greatest_pressure * float(rng.choice([0.0, 0.5, 1.0]))
         other = sensor.replace(**dict(zip(local.names, sizes.tolist(), strict=True)), shear_modulus=modulus)
-        found = respond(batch_of(other, [pressure]), atlas=atlas.of(other))
-        if int(found.ends[0]) in (DEPTH, GAUGE) and np.isfinite(found.lines.sensitivity[0]):
+        try:
+            found = looked_up(atlas.of(other), other, np.array([pressure]))
             (state,) = solid_states(other, np.array([pressure]))
-            if state.figures is not None:
-                errors[i] = abs(found.lines.sensitivity[0] / state.figures.sensitivity - 1.0)
+        except BeyondLimitError:
+            continue
+        line = found.result.states[0].figures
+        if found.limitation is None and line is not None and state.figures is not None:
+            errors[i] = abs(line.sensitivity / state.figures.sensitivity - 1.0)
     return errors
