@@ -22,6 +22,7 @@ ENDS = {signal.SIGINT: "stopped by Ctrl-C", signal.SIGTERM: "stopped by SIGTERM"
 SWEEP = "sweep --design paper-dome --out made/s.nc --over membrane.wall_thickness_mm=1:1.6:"
 LINES = [
     "list",
+    "table paper-dome --set membrane.shape=cap --set indentation.depth_mm=2 --check",
     "new mine --out made",
     "predict paper-dome",
     "export-reader paper-dome --out made",

@@ -9,9 +9,9 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.candidates import evaluated, margins, rated
+from pneutouch.selection.problem import least_limit
 from pneutouch.units import KPA
 from pneutouch.workflows.select.checks import source_of
 from pneutouch.workflows.select.document import would_need

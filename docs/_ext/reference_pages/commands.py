@@ -21,6 +21,7 @@ EXAMPLES = {
     "compare": "pneutouch compare paper-dome soft-pad",
     "sweep": "pneutouch sweep --design paper-dome --over membrane.wall_thickness_mm=1:2:3 --model atlas",
     "studio": "pneutouch studio paper-dome",
+    "table": "pneutouch table soft-pad --set membrane.shape=cap --set membrane.rise_mm=4",
     "build": "pneutouch build paper-dome --set membrane.material=FLX9960",
     "tray": "pneutouch tray paper-dome --over membrane.material=TangoPlus,FLX9940 --copies 2",
     "coupons": "pneutouch coupons --profile j735 --material Agilus30",

@@ -1,11 +1,11 @@
-"""``pneutouch calibrate``: fit the model to the sensor in hand."""
+"""``pneutouch calibrate``: fit the model to the sensor in hand; ``pneutouch table``: its local table."""
 
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, app, print_json
+from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
 from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words, table_text
@@ -49,6 +49,37 @@ def calibrate(
         raise typer.Exit(3)
     if record.calibration is None:
         raise typer.Exit(1)
+
+
+@app.command()
+def table(design: DesignArgument, set_: SetOption = None, check: Annotated[bool, parameter("check")] = False) -> None:
+    """Build the table of a design's neighbourhood, with which other shapes are answered in milliseconds."""
+    from time import process_time
+
+    from pneutouch.catalogue import load_scene
+    from pneutouch.evaluation.evaluate import sensor_of
+    from pneutouch.mechanics.models.accuracy import TABULATION
+    from pneutouch.mechanics.models.local import MODEL, find, make
+    from pneutouch.parts import assemble
+    from pneutouch.units import KPA
+
+    scene = load_scene(design, changes(set_))
+    sensor = sensor_of(assemble(scene))
+    found, damaged = find(sensor)
+    for path in damaged:
+        notify(f"note: {path} is damaged{'' if check else ': built again if it is of this design'}")
+    if check:
+        echo(MODEL.covers(sensor) or f"{design}: answered from a stored table")
+    else:
+        begun = process_time()
+        with bar("solving the designs around it") as progress:
+            found = make(sensor, max(0.0, *scene.design.pneumatics.driving_pressures_kPa, 0.0) * KPA, progress)
+        echo(f"built in {process_time() - begun:.0f} s of processor time")
+    if found is None:
+        raise typer.Exit(1)
+    error = f"sensitivity within {found.error:.2%} of the solid in {found.errors.size} presses, bound {TABULATION:.2%}"
+    echo(f"{found.path}: {found.path.stat().st_size / 1e6:.2f} MB; {error}")
+    report_next("predict", design, "--model", "auto", *set_words(set_))
 
 
 def calibration_text(record: "OutcomeRecord") -> str:

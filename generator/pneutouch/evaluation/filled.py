@@ -18,7 +18,7 @@ from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, moved, unit_step
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected.figures import state_logs
 from pneutouch.mechanics.models.accuracy import TREND, limit_discretisation
-from pneutouch.mechanics.models.choice import stated_error
+from pneutouch.mechanics.models.choice import model_named, stated_error
 from pneutouch.mechanics.models.solid import MODEL, solid_result
 from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Filling, Sensor
@@ -65,21 +65,29 @@ def filled_uncertainties(
 def driven_uncertainties(
     prediction: SensorPrediction, sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material]
 ) -> tuple[UncertaintyRecord, ...]:
-    """One record for each state of the solid at a driving pressure, where the atlas covers not all."""
+    """One record for each state of the solid, or of a local table, at a driving pressure that the atlas covers not."""
     at = [state.driving_pressure for state in prediction.states]
+    solve = _tabulated if prediction.model == "local" else _driven
 
     def again(other: Sensor, factor: float) -> Array:
-        return np.hstack([_found(_driven, other, factor * pressure) for pressure in at])
+        return np.hstack([_found(solve, other, factor * pressure) for pressure in at])
 
     here = _logs(prediction.states, [prediction.limits.limit_point] * len(at), sensor)
-    budget = _budget(sensor, scene, materials, at, here, again)
+    budget = _budget(sensor, scene, materials, at, here, again, prediction.model)
     return tuple(_records(budget, [values_of(prediction, state) for state in prediction.states], _BY_SOLID, scene))
 
 
 def _budget(
-    sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material], at: list[float], here: Array, again: Again
+    sensor: Sensor,
+    scene: ResolvedDesign,
+    materials: Sequence[Material],
+    at: list[float],
+    here: Array,
+    again: Again,
+    model: str = "solid",
 ) -> Budget:
-    """Budget of states ``at`` n pressures, MPa, with the logarithms ``here`` of their figures, (figures, n)."""
+    """Budget of states of a ``model`` ``at`` n pressures, MPa, with the logarithms ``here`` of their figures, (figures,
+    n)."""
     batch = batch_of(sensor, at)
     of_sensor = sources(
         batch,
@@ -87,7 +95,7 @@ def _budget(
         scene.printer,
         near_paper=is_near_paper(sensor),
         errors=model_errors(scene.membrane_material, materials),
-        numerical={SENSITIVITY_KEY: stated_error("solid", sensor), _LIMIT_KEY: limit_discretisation(sensor)},
+        numerical={SENSITIVITY_KEY: stated_error(model, sensor), _LIMIT_KEY: limit_discretisation(sensor)},
         calibration=scene.calibration,
         anywhere=scene.design.contact.anywhere,
     )
@@ -139,6 +147,16 @@ def _filled(sensor: Sensor, filling: Filling) -> Array:
 def _driven(sensor: Sensor, pressure: float) -> Array:
     result = solid_result(sensor, np.array([pressure]), past_limit=1.0)
     return _logs(result.states, [result.limits.limit_point])
+
+
+def _tabulated(sensor: Sensor, pressure: float) -> Array:
+    """Figures from a local table, and by the solid where no table has them."""
+    table = model_named("local")
+    if table.covers(sensor) is None:
+        answer = table.answer_one(sensor, np.array([pressure]))
+        if answer.limitation is None:
+            return _logs(answer.result.states, [answer.result.limits.limit_point])
+    return _driven(sensor, pressure)
 
 
 def _logs(states: Sequence[SensorState], limits: Sequence[float | None], sensor: Sensor | None = None) -> Array:

@@ -21,7 +21,7 @@ from pneutouch.units import KPA
 COLUMNS = 41
 """Number of indentations in a row of the grid, from no contact to the end of the range."""
 
-ROWS = {"atlas": 17, "membrane": 17, "solid": 9, "harmonic": 5}
+ROWS = {"atlas": 17, "membrane": 17, "local": 17, "solid": 9, "harmonic": 5}
 """Number of driving pressures of the grid by model: the cost of a press differs a thousandfold."""
 
 GAS_ROWS = 65
@@ -227,7 +227,7 @@ def _gas_volume(prediction: SensorPrediction, sensor: Sensor, pressures: Array) 
 STATES = 10_000
 """Number of states compared under the conditions of the tare, over all presses."""
 
-_PRESSES = {"atlas": 100, "membrane": 100}
+_PRESSES = {"atlas": 100, "local": 100, "membrane": 100}
 _FEW = 4
 """Number of presses if each costs seconds, for models that ``_PRESSES`` does not name."""
 

@@ -171,7 +171,7 @@ def uncertainties(
     sucked = UncertaintyRecord(unknown=_VACUUM)
     records = tuple(sucked if state.driving_pressure < 0.0 else next(known) for state in prediction.states)
     covered = all(one.unknown is None for one in records) and sensor.dome.shape.plain is sensor.dome.shape
-    if covered or prediction.model != "solid" or sensor.dome.flange or sensor.protocol.other_contact:
+    if covered or prediction.model not in ("solid", "local") or sensor.dome.flange or sensor.protocol.other_contact:
         # On a flange as printed the solid would take minutes.
         return records
     from pneutouch.evaluation.filled import driven_uncertainties

@@ -7,10 +7,9 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasResponse, respond
-from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.rating import RATED_SHARE, rated_pressure
 from pneutouch.mechanics.response import Figures
-from pneutouch.selection.problem import SelectionProblem
+from pneutouch.selection.problem import SelectionProblem, least_limit
 from pneutouch.spec.fields import declaration
 from pneutouch.spec.membrane_table import Membrane
 

@@ -1,15 +1,19 @@
-"""A selection problem in numbers: resins, bounds and target, in mm, N, MPa; sensitivities in kPa/N."""
+"""A selection problem in numbers: resins, bounds and target, in mm, N, MPa; sensitivities in kPa/N.
+
+Also the first limit of free inflation over the wall ratio, limit point or break strain, for many domes at once.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple, Self
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
-from pneutouch.mechanics.atlas.table import Atlas
+from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.corrected.designs import ContactFactors
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.grade import Grade
@@ -134,3 +138,48 @@ class SelectionProblem:
             inside = self.connector(middle, ratio * middle).diameter <= self.max_footprint
             least, most = np.where(inside, middle, least), np.where(inside, most, middle)
         return np.where(kept, high, least - _ROUNDED)
+
+
+_RATIOS, _VOLUMES = 75, 91
+"""Numbers of wall ratios and volumes. The ratios are 3 % apart: limit pressures are linear between them to 0.02 %."""
+
+
+def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
+    """Driving pressures over the shear modulus at which inflated domes meet their first limit, (n,).
+
+    The limit is the limit point, or the break stretch (n,) if the wall reaches it earlier. A wall ratio (n,) outside
+    the tables counts as the nearest one inside.
+    """
+    ratios, limit, stretch, pressure = _inflations()
+    least = np.interp(wall_ratio, ratios, limit)
+    for value in distinct(break_stretch[break_stretch < stretch.max()]):
+        rows = break_stretch == value
+        ruptured = np.interp(wall_ratio[rows], ratios, _ruptured(float(value), stretch, pressure))
+        least[rows] = np.fmin(least[rows], ruptured)
+    return np.asarray(least)
+
+
+def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
+    """Pressure (mu) at which each wall ratio reaches the break stretch, (k,); NaN if the limit point comes first."""
+    reached = stretch >= break_stretch
+    after = np.maximum(reached.argmax(axis=1), 1)
+    rows = np.arange(after.size)
+    low, high = stretch[rows, after - 1], stretch[rows, after]
+    share = np.clip((break_stretch - low) / (high - low), 0.0, 1.0)
+    between = pressure[rows, after - 1] + share * (pressure[rows, after] - pressure[rows, after - 1])
+    return np.where(reached.any(axis=1), between, np.nan)
+
+
+@cache
+def _inflations() -> tuple[Array, Array, Array, Array]:
+    """Wall ratios (k,), limit pressures (k,), stretches and pressures over mu up to the limit (k, volumes)."""
+    walls = shipped().recipe.wall_ratios
+    # Powers are rounded: the ends stay inside the tables.
+    ratios = np.clip(np.geomspace(walls[0], walls[-1], _RATIOS), walls[0], walls[-1])
+    slices = shipped().slices(ratios, ("stretch",))
+    k = np.repeat(np.arange(_RATIOS), _VOLUMES)
+    nu = np.tile(np.linspace(0.0, 1.0, _VOLUMES), _RATIOS)
+    apex = slices.free_apex(k, nu)[:, 0]
+    shape = (_RATIOS, _VOLUMES)
+    stretch, pressure = slices.field("stretch", k, nu, apex), slices.point(k, nu, apex).pressure
+    return ratios, slices.limit_pressure, stretch.reshape(shape), pressure.reshape(shape)

@@ -15,7 +15,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.atlas.table import least_limit, shipped
+from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR, rated_pressure
 from pneutouch.mechanics.sensor import Sensor
@@ -23,6 +23,7 @@ from pneutouch.mechanics.uncertainty.propagate import limit_spread
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
 from pneutouch.results.scan import FavouringState, SeparatingDome, SeparationRecord, TellablePattern
+from pneutouch.selection.problem import least_limit
 from pneutouch.spec.material import Material
 from pneutouch.spec.options import ScanOptions
 from pneutouch.spec.read import Changes

@@ -12,8 +12,9 @@ import numpy as np
 from rich.progress import Progress
 
 from pneutouch.mechanics.atlas.recipe import RECIPE
+from pneutouch.mechanics.atlas.surveyed import WallCoefficients, fit_sheet
 from pneutouch.mechanics.atlas.table import SHIPPED
-from release.tables.atlas.fit import WallCoefficients, fit_sheet, join
+from release.tables.atlas.fit import join
 from release.tables.atlas.stale import solid_fingerprint, survey_fingerprint
 from release.tables.atlas.survey import survey
 

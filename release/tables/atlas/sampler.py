@@ -47,14 +47,6 @@ def survey_depths(recipe: AtlasRecipe) -> Array:
     return axes(recipe).depth.even(recipe.depths)
 
 
-def stretch_by_zone(probe: StrainProbe, x: Array) -> Array:
-    """Greatest principal stretch on each face and third of the arc, inner face first, from the base up; (6,)."""
-    greatest = probe.principal(x)[0].max(axis=0)
-    third = np.clip(np.arctan2(probe.places[:, 1], probe.places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
-    zones = [(probe.outer == face) & (third == part) for face in (False, True) for part in range(3)]
-    return np.array([greatest[zone].max(initial=0.0) for zone in zones])
-
-
 @dataclass(frozen=True)
 class Equilibrium:
     """A state held at its volume under the plate, with its tangents; nondimensional (R0, mu).

@@ -9,7 +9,8 @@ from dataclasses import asdict
 import numpy as np
 
 from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
-from release.tables.atlas.sampler import AtlasSampler, stretch_by_zone
+from pneutouch.mechanics.atlas.surveyed import stretch_by_zone
+from release.tables.atlas.sampler import AtlasSampler
 
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)

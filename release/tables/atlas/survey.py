@@ -6,47 +6,15 @@ energy, so that any gas can be put behind it afterwards.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
-from release.tables.atlas.sampler import (
-    AtlasSampler,
-    Equilibrium,
-    SampledPress,
-    stretch_by_zone,
-    survey_depths,
-    survey_volumes,
-)
+from pneutouch.mechanics.atlas.recipe import AtlasRecipe
+from pneutouch.mechanics.atlas.surveyed import Survey, stored_fields
+from release.tables.atlas.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
-
-
-@dataclass(frozen=True)
-class Survey:
-    """All states solved for one wall ratio.
-
-    free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: limit point.
-    volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(STORED), m).
-    """
-
-    wall_ratio: float
-    limit_volume: float
-    limit_pressure: float
-    free_volume: Array
-    free_apex: Array
-    volume: Array
-    height: Array
-    energy: Array
-    pressure: Array
-    force: Array
-    stiffness: Array
-    fields: Array
-    fold_from: float
-    fold_volume: Array
 
 
 def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
@@ -130,23 +98,7 @@ def _turned(sampler: AtlasSampler, node: Equilibrium, deeper: Equilibrium | None
 
 
 def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float, fold_volume: Array) -> Survey:
-    solid = sampler.solid
-    inner = solid.mesh.inner_apex
-
-    def fields(node: Equilibrium) -> list[float]:
-        """One state's `STORED` fields, in their order."""
-        x, touch = node.state.x, node.state.touch
-        assert touch is not None
-        peak = sampler.probe.peak(x)
-        values = {
-            **dict(zip(STRETCHES, stretch_by_zone(sampler.probe, x), strict=True)),
-            "contact_radius": solid.contact.footprint(x, touch).radius,
-            "von_mises": peak.von_mises,
-            "fold": peak.fold,
-            "inner_apex": float(x[inner, 1]),
-        }
-        return [values[name] for name in STORED]
-
+    solid, probe = sampler.solid, sampler.probe
     return Survey(
         solid.wall,
         sampler.limit.volume,
@@ -159,7 +111,7 @@ def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float,
         np.array([n.state.filling.pressure for n in nodes]),
         np.array([n.force for n in nodes]),
         np.array([n.stiffness for n in nodes]),
-        np.array([fields(n) for n in nodes]).T,
+        np.array([stored_fields(probe, n.state) for n in nodes]).T,
         fold_from,
         fold_volume,
     )

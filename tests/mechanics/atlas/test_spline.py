@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from release.tables.atlas.fit import roughness
 from scipy.interpolate import BSpline
 
 from pneutouch.mechanics.atlas.recipe import SplineAxis, pieces
+from pneutouch.mechanics.atlas.surveyed import roughness
 
 axes = st.builds(
     lambda low, length, cells, degree, stretch: SplineAxis(low, low + length, cells, degree, stretch),

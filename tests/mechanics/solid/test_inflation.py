@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from release.tables.atlas.sampler import stretch_by_zone
 from scipy.optimize import minimize_scalar
 
 from pneutouch.mechanics.atlas.press import longest_outer_edge
+from pneutouch.mechanics.atlas.surveyed import stretch_by_zone
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, yeoh
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome

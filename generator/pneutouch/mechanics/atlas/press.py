@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasPoint, AtlasSlices
+from pneutouch.mechanics.atlas.table import AtlasPoint, AtlasSlices
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.mesh import arc_cells
 from pneutouch.mechanics.solid.object_contact import flat_radius, rim_radius
@@ -119,7 +119,7 @@ class AtlasPress:
 
     def volume(self, nu: Array) -> Array:
         """Cavity volume (R0^3) at nu, (n,)."""
-        return REST_VOLUME + nu * self.reach
+        return self.slices.rest_volume[self.k] + nu * self.reach
 
     def rows(self, rows: Index | Flags) -> "AtlasPress":
         """Press of the selected sensors, with their inflated states."""

@@ -117,8 +117,7 @@ def run(batch: SensorBatch, steps: int, atlas: Atlas, names: tuple[str, ...] = _
     """`respond` in one pass, together with the states behind it; ``names`` are the fields to cut from the tables."""
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)
-    walls, k = np.unique(batch.wall_ratio, return_inverse=True)
-    press = AtlasPress(batch, atlas.slices(walls, names), k)
+    press = AtlasPress(batch, *atlas.slices_of(batch.wall_thickness, batch.inner_radius, names))
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = share * (batch.depth / batch.inner_radius)[:, None]
     whole = press.march(travel)

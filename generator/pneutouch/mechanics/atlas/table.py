@@ -1,7 +1,4 @@
-"""Tables of the atlas, read once, and the states interpolated in them; nu as in `recipe.AtlasRecipe`.
-
-Also the first limit of free inflation over the wall ratio, limit point or break strain, for many domes at once.
-"""
+"""Tables of the atlas, read once, and the states interpolated in them; nu as in `recipe.AtlasRecipe`."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,13 +8,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Index, distinct
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.recipe import FIELDS, AtlasAxes, AtlasRecipe, axes, parts, unflattened
 
 SHIPPED = Path(__file__).with_name("atlas.npz")
 
 #: Cavity volume of the unloaded hemisphere in R0^3.
 REST_VOLUME = 2.0 / 3.0 * np.pi
+
+
+_ORDERS = np.arange(3.0)[:, None]
+"""Orders of the derivatives that a basis has."""
 
 
 class AtlasPoint(NamedTuple):
@@ -43,10 +44,11 @@ class AtlasPoint(NamedTuple):
 @dataclass(frozen=True)
 class AtlasSlices:
     """Tables at some wall ratios, numbered k: limit_volume, limit_pressure (walls,), apex (walls, volume), potential
-    (walls, volume, depth), support (walls, volume cells, depth cells). rest_apex (walls,): outer apex height of the
-    unloaded dome. fold_from (walls,), fold_volume (walls, folds): edge of buckling, the least volume of an unbuckled
-    wall at fold_depths, from depth fold_from on. fields: (walls, volume, depth, parts of all fields), with the
-    ``columns`` of each field by its name."""
+    (walls, volume, depth), support (walls, volume cells, depth cells). rest_apex, rest_volume (walls,): outer apex
+    height and cavity of the unloaded dome. unit (walls,): unit of all depths, R0 in the shipped atlas. fold_from
+    (walls,), fold_volume (walls, folds): edge of buckling, the least volume of an unbuckled wall at fold_depths, from
+    depth fold_from on. fields: (walls, volume, depth, parts of all fields), with the ``columns`` of each field by its
+    name."""
 
     grid: AtlasAxes
     limit_volume: Array
@@ -55,6 +57,8 @@ class AtlasSlices:
     potential: Array
     support: Flags
     rest_apex: Array
+    rest_volume: Array
+    unit: Array
     fold_from: Array
     fold_volume: Array
     fold_depths: Array
@@ -63,7 +67,7 @@ class AtlasSlices:
 
     def reach(self, k: Index) -> Array:
         """Volume (R0^3) between rest and limit point for walls k, (n,)."""
-        return np.asarray(self.limit_volume[k] - REST_VOLUME)
+        return np.asarray(self.limit_volume[k] - self.rest_volume[k])
 
     def free_apex(self, k: Index, nu: Array) -> Array:
         """Outer apex height of the free dome and its first two derivatives by nu, (n, 3)."""
@@ -85,7 +89,9 @@ class AtlasSlices:
         """
         cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
-        depth, by_w = self.grid.depth.basis(apex[:, 0] - height)
+        unit = self.unit[k]
+        depth, by_w = self.grid.depth.basis((apex[:, 0] - height) / unit)
+        by_w /= unit[:, None, None] ** _ORDERS
         jet = np.matmul(np.matmul(by_nu, self._windows[k, cell, depth]), by_w.swapaxes(1, 2))
         rise, bend, reach = apex[:, 1], apex[:, 2], self.reach(k)
         force = jet[:, 0, 1]
@@ -110,7 +116,7 @@ class AtlasSlices:
 
     def folded(self, k: Index, nu: Array, height: Array) -> Flags:
         """Mask (n,) of the states, at volumes nu and plate heights (n,), before which the wall has buckled."""
-        depth = self.rest_apex[k] - height
+        depth = (self.rest_apex[k] - height) / self.unit[k]
         deep = depth > self.fold_from[k]
         if not deep.any():
             return deep
@@ -119,7 +125,7 @@ class AtlasSlices:
         j = np.clip(share.astype(np.intp), 0, grid.size - 2)
         share = share - j
         least = (1 - share) * self.fold_volume[k, j] + share * self.fold_volume[k, j + 1]
-        return np.asarray(deep & (REST_VOLUME + nu * self.reach(k) < least))
+        return np.asarray(deep & (self.rest_volume[k] + nu * self.reach(k) < least))
 
     def field(self, name: str, k: Index, nu: Array, height: Array) -> Array:
         """A tabulated field (see `recipe.FIELDS`) at volumes nu and plate heights, (n,)."""
@@ -129,7 +135,7 @@ class AtlasSlices:
         """Tabulated fields at volumes nu and plate heights, (n,) each."""
         cell, by_nu = self.grid.volume.values(nu)
         apex = np.matmul(by_nu[:, None], self._apex_windows[k, cell][..., None])[:, 0, 0]
-        depth, by_w = self.grid.depth.values(apex - height)
+        depth, by_w = self.grid.depth.values((apex - height) / self.unit[k])
         across = np.matmul(by_nu[:, None], self._field_windows[k, cell, depth]).reshape(*by_w.shape, -1)
         found = np.matmul(by_w[:, None], across)[:, 0]
         # Saturation is monotone, so the maximum over the parts of a field is taken before the saturation is undone.
@@ -150,20 +156,25 @@ class Atlas:
 
     def __init__(self, tables: dict[str, Array], recipe: AtlasRecipe) -> None:
         self.recipe = recipe
-        self._tables = tables
+        self.tables = tables
         self._grid = axes(recipe)
         self._stacked: dict[tuple[str, ...], Array] = {}
 
     def boxed(self, recipe: AtlasRecipe) -> "Atlas":
         """An atlas with the same tables and another recipe, which may differ only in the box (limits of inputs)."""
-        return Atlas(self._tables, recipe)
+        return Atlas(self.tables, recipe)
 
     def _together(self, names: tuple[str, ...]) -> Array:
         """Tables of all parts of fields, (walls, volume, depth, parts)."""
         if names not in self._stacked:
-            every = [self._tables[part] for name in names for part in parts(name)] or [self._tables["potential"]]
+            every = [self.tables[part] for name in names for part in parts(name)] or [self.tables["potential"]]
             self._stacked[names] = np.stack(every, axis=-1)
         return self._stacked[names]
+
+    def slices_of(self, wall: Array, radius: Array, names: tuple[str, ...]) -> tuple[AtlasSlices, Index]:
+        """`slices` for walls and inner radii (n,) of one unit, each ratio once; with each sensor's number k."""
+        walls, k = np.unique(wall / radius, return_inverse=True)
+        return self.slices(walls, names), k
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
         """Tables interpolated at wall ratios (walls,) inside the box, with the fields ``names``."""
@@ -184,22 +195,24 @@ class Atlas:
         nodes = np.log(self.recipe.wall_ratios)
         ends = np.cumsum([len(parts(name)) for name in names])
         below = np.clip(np.searchsorted(nodes, np.log(wall_ratio), side="right") - 1, 0, nodes.size - 2)
-        support: Flags = self._tables["support"].astype(bool)
+        support: Flags = self.tables["support"].astype(bool)
         share = ((np.log(wall_ratio) - nodes[below]) / (nodes[below + 1] - nodes[below]))[:, None]
 
         def between(name: str) -> Array:
-            table = self._tables[name].reshape(nodes.size, -1)
+            table = self.tables[name].reshape(nodes.size, -1)
             values: Array = (1 - share) * table[below] + share * table[below + 1]
             return values
 
         return AtlasSlices(
             grid=self._grid,
-            limit_volume=cut(self._tables["limit_volume"]),
-            limit_pressure=cut(self._tables["limit_pressure"]),
-            apex=cut(self._tables["apex"]),
-            potential=cut(self._tables["potential"]),
+            limit_volume=cut(self.tables["limit_volume"]),
+            limit_pressure=cut(self.tables["limit_pressure"]),
+            apex=cut(self.tables["apex"]),
+            potential=cut(self.tables["potential"]),
             support=support[below] & support[below + 1],
             rest_apex=1.0 + wall_ratio,
+            rest_volume=np.full_like(wall_ratio, REST_VOLUME),
+            unit=np.ones_like(wall_ratio),
             fold_from=between("fold_from")[:, 0],
             fold_volume=between("fold_volume"),
             fold_depths=self.recipe.fold_depths,
@@ -216,48 +229,3 @@ def shipped() -> Atlas:
         numbers = {name: file[name] for name in file.files if name not in ("recipe", "solid")}
     # In double precision at once: products with half precision are slow.
     return Atlas({name: table.astype(np.float64) for name, table in numbers.items()}, recipe)
-
-
-_RATIOS, _VOLUMES = 75, 91
-"""Numbers of wall ratios and volumes. The ratios are 3 % apart: limit pressures are linear between them to 0.02 %."""
-
-
-def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
-    """Driving pressures over the shear modulus at which inflated domes meet their first limit, (n,).
-
-    The limit is the limit point, or the break stretch (n,) if the wall reaches it earlier. A wall ratio (n,) outside
-    the tables counts as the nearest one inside.
-    """
-    ratios, limit, stretch, pressure = _inflations()
-    least = np.interp(wall_ratio, ratios, limit)
-    for value in distinct(break_stretch[break_stretch < stretch.max()]):
-        rows = break_stretch == value
-        ruptured = np.interp(wall_ratio[rows], ratios, _ruptured(float(value), stretch, pressure))
-        least[rows] = np.fmin(least[rows], ruptured)
-    return np.asarray(least)
-
-
-def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
-    """Pressure (mu) at which each wall ratio reaches the break stretch, (k,); NaN if the limit point comes first."""
-    reached = stretch >= break_stretch
-    after = np.maximum(reached.argmax(axis=1), 1)
-    rows = np.arange(after.size)
-    low, high = stretch[rows, after - 1], stretch[rows, after]
-    share = np.clip((break_stretch - low) / (high - low), 0.0, 1.0)
-    between = pressure[rows, after - 1] + share * (pressure[rows, after] - pressure[rows, after - 1])
-    return np.where(reached.any(axis=1), between, np.nan)
-
-
-@cache
-def _inflations() -> tuple[Array, Array, Array, Array]:
-    """Wall ratios (k,), limit pressures (k,), stretches and pressures over mu up to the limit (k, volumes)."""
-    walls = shipped().recipe.wall_ratios
-    # Powers are rounded: the ends stay inside the tables.
-    ratios = np.clip(np.geomspace(walls[0], walls[-1], _RATIOS), walls[0], walls[-1])
-    slices = shipped().slices(ratios, ("stretch",))
-    k = np.repeat(np.arange(_RATIOS), _VOLUMES)
-    nu = np.tile(np.linspace(0.0, 1.0, _VOLUMES), _RATIOS)
-    apex = slices.free_apex(k, nu)[:, 0]
-    shape = (_RATIOS, _VOLUMES)
-    stretch, pressure = slices.field("stretch", k, nu, apex), slices.point(k, nu, apex).pressure
-    return ratios, slices.limit_pressure, stretch.reshape(shape), pressure.reshape(shape)

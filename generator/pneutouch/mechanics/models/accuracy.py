@@ -29,6 +29,7 @@ or tearing, and not for ranges below 0.2 R0 (docs/background/atlas.md); checked 
 NUMERICAL = {
     "membrane": 17.0,
     "atlas": SENSITIVITY_DISCRETISATION + TABULATION,
+    "local": SENSITIVITY_DISCRETISATION + TABULATION,
     "solid": SENSITIVITY_DISCRETISATION,
     "harmonic": OBJECT_DISCRETISATION,
 }

@@ -24,7 +24,7 @@ from pneutouch.mechanics.atlas.respond import (
     AtlasRun,
     run,
 )
-from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
+from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.events import CREASE, DETAIL, Event, PathPoint, crossing
 from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, NUMERICAL, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
@@ -49,7 +49,7 @@ _MEETS_RING = Limitation(
     False,
 )
 
-_VACUUM = Limitation("its tables have no states below ambient pressure", True)
+VACUUM = Limitation("its tables have no states below ambient pressure", True)
 
 SHALLOW, _LEAST_DEPTH = 0.2, 0.1
 """Range in R0 below which the table may exceed `TABULATION`, and least depth of a press; sensitivities of 300 random
@@ -114,19 +114,28 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
     fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
     ends = np.cumsum([len(pressures) for pressures in driving_pressures])
     firsts = ends - [len(pressures) for pressures in driving_pressures]
-    free = _FreeCurves.of(passed.press.slices, passed.press.k[firsts])
-    rows = zip(sensors, map(range, firsts, ends), zip(*free, strict=True), strict=True)
-    found = [_answer(sensor, passed, fields, some, _FreeCurves(*curve)) for sensor, some, curve in rows]
+    free = FreeCurves.of(passed.press.slices, passed.press.k[firsts])
+    limits = passed.press.limit[firsts].tolist()
+    rows = zip(sensors, map(range, firsts, ends), zip(*free, strict=True), limits, strict=True)
+    found = [_ringed(s, read_answer(s, passed, fields, some, FreeCurves(*free), p)) for s, some, free, p in rows]
     return [
-        one._replace(limitation=_VACUUM) if isinstance(one, ModelAnswer) and (pressures < 0.0).any() else one
+        one._replace(limitation=VACUUM) if isinstance(one, ModelAnswer) and (pressures < 0.0).any() else one
         for one, pressures in zip(found, driving_pressures, strict=True)
     ]
 
 
-def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: "_FreeCurves") -> Answered:
-    """Answer for one sensor, whose driving pressures are the ``rows`` of a pass, and its free inflation."""
-    response, press = passed.response, passed.press
-    limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
+def _ringed(sensor: Sensor, answer: Answered) -> Answered:
+    """An answer with its limitation if, without another, the wall meets the ring that the atlas leaves out."""
+    meets = isinstance(answer, ModelAnswer) and answer.limitation is None and meets_ring(sensor)
+    return answer._replace(limitation=_MEETS_RING) if isinstance(answer, ModelAnswer) and meets else answer
+
+
+def read_answer(
+    sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range, free: "FreeCurves", limit: float
+) -> Answered:
+    """Answer for one sensor, whose driving pressures are the ``rows`` of a pass, its free inflation and the pressure
+    (mu) of its limit point."""
+    response, press, limit = passed.response, passed.press, limit * sensor.wall.shear_modulus
     for pressure in press.batch.driving_pressure[rows].tolist():
         if pressure >= limit:
             return BeyondLimitError(pressure, limit, "it lies beyond the limit point")
@@ -138,8 +147,6 @@ def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: ra
         limitation = Limitation(why, False)
     if limitation is None and (response.range_end[rows] < SHALLOW * sensor.dome.inner_radius).any():
         limitation = _TOO_SHALLOW
-    if limitation is None and meets_ring(sensor):
-        limitation = _MEETS_RING
     curve, point, rupture = _inflation(sensor, free, limit)
     limits = Limits(limit, rupture, sensor.gas.gauge_limit)
     return ModelAnswer(ModelResult(point, limits, curve, states), limitation)
@@ -151,7 +158,7 @@ def _state(
     """State at one driving pressure; ``fields`` are the fields along ``whole``, (n, m) each."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     ok = whole.ok[i]
-    known = slice(0, ok.size if ok.all() else int(np.argmin(ok)))
+    known = slice(0, ok.size if ok.all() else max(int(np.argmin(ok)), 1))
     field = {name: values[i, known] for name, values in fields.items()}
     depth = (press.apex[i] - whole.height[i, known]) * length
     has_range = response.range_end[i] > 0.0
@@ -204,7 +211,7 @@ _INFLATED = 90
 """Volumes from rest to the limit point at which a curve of free inflation is read from the tables; six lie beyond."""
 
 
-class _FreeCurves(NamedTuple):
+class FreeCurves(NamedTuple):
     """Free inflation at m wall ratios, nondimensional, (m, n) each: cavity, both apices' heights, greatest stretch."""
 
     volume: Array
@@ -214,18 +221,18 @@ class _FreeCurves(NamedTuple):
     pressure: Array
 
     @classmethod
-    def of(cls, slices: AtlasSlices, walls: Index) -> "_FreeCurves":
+    def of(cls, slices: AtlasSlices, walls: Index) -> "FreeCurves":
         """The curves at some of the wall ratios of ``slices``."""
         beyond = np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]
         steps = np.concatenate([np.linspace(0.0, 1.0, _INFLATED + 1), beyond])
         k, nu = np.repeat(walls, steps.size), np.tile(steps, walls.size)
         apex = slices.free_apex(k, nu)[:, 0]
         inner, stretch = slices.several(("inner_apex", "stretch"), k, nu, apex)
-        columns = REST_VOLUME + nu * slices.reach(k), inner, apex, stretch, slices.point(k, nu, apex).pressure
+        columns = slices.rest_volume[k] + nu * slices.reach(k), inner, apex, stretch, slices.point(k, nu, apex).pressure
         return cls(*(column.reshape(walls.size, -1) for column in columns))
 
 
-def _inflation(sensor: Sensor, free: _FreeCurves, limit: float) -> tuple[InflationCurve, LimitPoint, float | None]:
+def _inflation(sensor: Sensor, free: FreeCurves, limit: float) -> tuple[InflationCurve, LimitPoint, float | None]:
     """Curve of free inflation to slightly beyond its ``limit`` (MPa), the limit point, the pressure at break strain."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     inner, apex, pressure, top = free.inner, free.apex, free.pressure * mu, _INFLATED

@@ -7,6 +7,7 @@ from typing import TypedDict, cast
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.models.interface import SensorModel
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.values import plain_number
 from pneutouch.wording import data_of
 
@@ -67,6 +68,8 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     names = list(MODELS)
     passed, models = [], []
     for name in names[: names.index(best) + 1]:
+        if name == "local" and no_hemisphere(sensor.dome.shape) is None:
+            continue
         error = stated_error(name, sensor)
         if error > tolerance:
             passed.append(f"{name}: its stated error of {error:.1%} is more than {tolerance:.1%}")

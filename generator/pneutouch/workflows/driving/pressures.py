@@ -32,7 +32,7 @@ BUDGET_KEYS = {"force_range_N": "force_at_range_end_N"}
 _TOP = 0.98
 """Share of the least nominal limit up to which figures are computed: they end at the limit point itself."""
 
-_POINTS = {"atlas": 33, "membrane": 33}
+_POINTS = {"atlas": 33, "local": 33, "membrane": 33}
 _FEW = 13
 """Numbers of driving pressures: for models that take microseconds, by name, and for models that take a second."""
 
