@@ -19,7 +19,7 @@ from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.shape.ellipsoid import Ellipsoid, Thimble
+from pneutouch.shape.round import Ellipsoid, Thimble
 from pneutouch.units import KPA
 
 CELLS, DRIVING_KPA, DEPTH = (48, 2), (10.0, 20.0), 3.0

@@ -18,8 +18,8 @@ from pneutouch.mechanics.solid.mesh import SolidMesh, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid, unstable_waves
-from pneutouch.shape.cap import Cap
 from pneutouch.shape.disc import Disc
+from pneutouch.shape.round import Cap
 
 RATIOS = (0.3, 0.49)
 """Poisson's ratios of the discs."""

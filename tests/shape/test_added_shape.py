@@ -17,8 +17,8 @@ from pneutouch.parts import assemble
 from pneutouch.printability.measure.mould import cavity_match
 from pneutouch.schemas import schema_of
 from pneutouch.shape import SHAPES
-from pneutouch.shape.cap import Cap
 from pneutouch.shape.hemisphere import Hemisphere
+from pneutouch.shape.round import Cap
 from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.membrane_table import Membrane

@@ -14,8 +14,8 @@ from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.shape import shape_of
-from pneutouch.shape.ellipsoid import quarter
 from pneutouch.shape.even import biarc, fitted
+from pneutouch.shape.round import quarter
 from tests.shape.shapes import shipped
 
 HALF_BALLS = {

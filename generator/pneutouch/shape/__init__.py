@@ -13,9 +13,9 @@ from pneutouch.shape.hemisphere import Hemisphere
 
 SHAPES: dict[str, str | type[DomeShape]] = {
     "hemisphere": Hemisphere,
-    "cap": "cap.Cap",
-    "ellipsoid": "ellipsoid.Ellipsoid",
-    "thimble": "ellipsoid.Thimble",
+    "cap": "round.Cap",
+    "ellipsoid": "round.Ellipsoid",
+    "thimble": "round.Thimble",
     "disc": "disc.Disc",
     "corrugated": "disc.CorrugatedDisc",
     "profile": "profile.Profile",
@@ -95,7 +95,7 @@ def _kind(key: str, sizes: Mapping[str, Any]) -> type[DomeShape]:
     """Class of a shape; a hemisphere has others with a fillet and with a wall that varies."""
     if key != Hemisphere.key or not sizes:
         return _loaded(SHAPES[key])
-    return _loaded("cap.FreeHemisphere")
+    return _loaded("round.FreeHemisphere")
 
 
 def _loaded(shape: str | type[DomeShape]) -> type[DomeShape]:

@@ -22,7 +22,7 @@ from benchmarks.shape_references import (
 )
 
 from pneutouch.mechanics.solid.inflate import inflate
-from pneutouch.shape.ellipsoid import Ellipsoid, Thimble
+from pneutouch.shape.round import Ellipsoid, Thimble
 from pneutouch.units import KPA
 from tests.mechanics.exact_membrane import flat, flat_at, flat_limit
 from tests.mechanics.solid.calculix_presses import calculix_inflated, calculix_press, solid_press
