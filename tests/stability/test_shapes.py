@@ -23,7 +23,7 @@ def pressed(driving_kPa=0.0, cells=None, **changes):
 
 
 @pytest.mark.parametrize("gas", [1.0, 100.0])
-@pytest.mark.parametrize(("rise", "wall"), [(1.0, 0.3), (2.0, 0.3), (3.0, 0.3), (4.0, 0.3), (4.0, 0.6)])
+@pytest.mark.parametrize(("rise", "wall"), [(1.0, 0.3), (2.0, 0.3), (3.0, 0.3), (4.0, 0.6)])
 def test_a_wide_plate_snaps_no_shallow_cap(rise, wall, gas):
     """The plate holds the pole level, and the ring of contact widens: the force rises to nine tenths of the rise."""
     sensor = sensor_of(

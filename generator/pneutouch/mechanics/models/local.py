@@ -31,7 +31,14 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import NEAR, run
 from pneutouch.mechanics.atlas.surveyed import INFLATED
-from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, TABULATION, discretised, solid_assumptions
+from pneutouch.mechanics.models.accuracy import (
+    BODY,
+    NOT_CHECKED,
+    TABULATION,
+    discretised,
+    sensitivity_discretisation,
+    solid_assumptions,
+)
 from pneutouch.mechanics.models.atlas import VACUUM, FreeCurves, read_answer
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.models.solid import solid_states
@@ -95,6 +102,10 @@ class LocalTables(SensorModel):
         """Answers from the tables, one sensor at a time."""
         return one_by_one(_answer, sensors, driving_pressures)
 
+    def stated_error(self, sensor: Sensor) -> float:
+        """Relative error of the solid's mesh and of the table in sensitivity."""
+        return sensitivity_discretisation(sensor) + TABULATION
+
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Errors of the solid's mesh, and the measured error of the table."""
         table, _ = find(sensor)
@@ -103,7 +114,8 @@ class LocalTables(SensorModel):
             f"Local table: sensitivity within {table.error:.2%} of the solid in {table.errors.size} presses of its "
             f"neighbourhood; counted as {TABULATION:.2%}."
         )
-        return discretised(text, sensitivity_tabulation_relative=TABULATION)
+        mesh = sensitivity_discretisation(sensor)
+        return discretised(text, mesh, sensitivity_tabulation_relative=TABULATION)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions of the solid."""

@@ -15,10 +15,9 @@ from pneutouch.mechanics.events import Event, SolidEvent, range_end
 from pneutouch.mechanics.models.accuracy import (
     BODY,
     NOT_CHECKED,
-    OBJECT_DISCRETISATION,
-    SENSITIVITY_DISCRETISATION,
     discretised,
     limit_discretisation,
+    sensitivity_discretisation,
     solid_assumptions,
 )
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
@@ -50,12 +49,9 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisState
     from pneutouch.mechanics.solid.indenter import RigidObject
 
-_SUMMARY = (
-    f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure within "
-    "{limit:.1%} of a refined mesh."
-)
+_SUMMARY = "Discretisation: sensitivity within {relative:.1%}, limit pressure within {limit:.1%} of a refined mesh."
 _OBJECT_SUMMARY = (
-    f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
+    "Discretisation: sensitivity within {relative:.0%}, limit pressure within "
     "{limit:.1%} of a refined mesh (docs/background/contact.md)."
 )
 
@@ -83,13 +79,13 @@ class SolidElements(SensorModel):
 
     def stated_error(self, sensor: Sensor) -> float:
         """Relative error of the mesh in sensitivity, which is greater for an object other than a plate."""
-        return SENSITIVITY_DISCRETISATION if sensor.protocol.body is None else OBJECT_DISCRETISATION
+        return sensitivity_discretisation(sensor)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Relative errors of the mesh in sensitivity and limit pressure."""
         error, plate = limit_discretisation(sensor), sensor.protocol.body is None
-        summary = (_SUMMARY if plate else _OBJECT_SUMMARY).format(limit=error)
-        relative = SENSITIVITY_DISCRETISATION if plate else OBJECT_DISCRETISATION
+        relative = self.stated_error(sensor)
+        summary = (_SUMMARY if plate else _OBJECT_SUMMARY).format(relative=relative, limit=error)
         return discretised(summary, relative, limit_relative=error)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
