@@ -100,8 +100,8 @@ class DomeShape(ABC):
 
     @property
     def outer_height(self) -> float:
-        """Height of the pole of the outer face."""
-        return self.outer[-1].end[1]
+        """Height of the highest point of the outer face."""
+        return max(piece.bounds()[3] for piece in self.outer)
 
     @property
     def cavity_volume(self) -> float:

@@ -110,8 +110,8 @@ class CavityFaces:
 
     @property
     def high(self) -> float:
-        """Height of the outer pole."""
-        return self.outer[-1].end[1]
+        """Height of the highest point of the outer face."""
+        return max(piece.bounds()[3] for piece in self.outer)
 
     @property
     def halfway(self) -> tuple[Point, Point]:
