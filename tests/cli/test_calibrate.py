@@ -277,7 +277,7 @@ def test_a_design_that_cannot_be_fitted_is_refused_at_once_and_compared_instead(
     (place / "designs" / "rough.toml").write_text(toml_text({**content, "contact": {"base": False}}))
     refused = run("calibrate", str(campaign), "--design", "rough", "--out", "out")
     assert refused.exit_code == 2
-    for word in ("rough.toml: contact.base = ", "atlas does not cover", "`compare` sets"):
+    for word in ("rough.toml: contact.base = ", "no fit covers", "`compare` sets"):
         assert word in refused.stderr
     assert not (place / "out").exists() and not (place / "calibrations").exists()
     words = ("characterize", str(campaign), "--design", "rough", "--evidence", "none", "--out", "out")
