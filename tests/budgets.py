@@ -123,8 +123,8 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 88_740, 70_000),
-    Budget("files of the package", package_files, 461, 450),
+    Budget("lines of the package", package_lines, 88_790, 70_000),
+    Budget("files of the package", package_files, 462, 450),
     Budget("lines of benchmarks", benchmark_lines, 7_000, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),
     Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),

@@ -18,6 +18,7 @@ SHAPES: dict[str, str | type[DomeShape]] = {
     "thimble": "round.Thimble",
     "disc": "disc.Disc",
     "corrugated": "disc.CorrugatedDisc",
+    "torus": "torus.Torus",
     "profile": "profile.Profile",
 }
 """Shapes by their name in a design file: a class, or the file and class of this folder that are loaded on first use."""
