@@ -8,14 +8,16 @@ from pydantic import Field, field_validator, model_validator
 from pneutouch.spec.fields import FieldsError, SparseTable, Table, name, number
 from pneutouch.spec.printer import Process
 
-SearchedShape = Literal["hemisphere", "cap", "ellipsoid", "thimble", "disc", "corrugated"]
+SearchedShape = Literal["hemisphere", "cap", "ellipsoid", "thimble", "disc", "corrugated", "torus"]
 """Shapes that have proportions to search; a profile is drawn."""
 
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 
 
-class TargetFigures(Table):
+class TargetFigures(SparseTable):
     """[target]: the required figures of the sensor. Whatever is left out is free."""
+
+    left_out = ("max_height_mm",)
 
     sensitivity_kPa_per_N: float | None = number(
         None, unit="kPa/N", low=1e-4, high=1e4, help="Slope of pressure rise over contact force."

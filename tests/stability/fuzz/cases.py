@@ -33,6 +33,7 @@ LINES: dict[str, tuple[str, ...]] = {
         "--sensitivity 1.9 --at 12 --force-range 15",
         "target.toml --write mine --pick 2",
         "--sensitivity 2 --inner-radius 9.25 --wall 1.5 --material TangoPlus",
+        "--sensitivity 2 --at 12 --shape disc,cap --material TangoPlus --prefer low --max-height 6",
     ),
     "sweep": (
         "sweep.toml --workers 1",
@@ -53,6 +54,7 @@ LINES: dict[str, tuple[str, ...]] = {
     ),
     "characterize": ("campaign", "campaign --json --target target.toml", "campaign/runs/run.csv --design paper-dome"),
     "calibrate": ("campaign --sensor TangoPlus-1 --hold-out 22 --save mine", "campaign --fit modulus,wall --json"),
+    "table": ("paper-dome --set membrane.shape=cap", "paper-dome --set membrane.shape=cap --check", "paper-dome"),
     "compare": ("paper-dome soft-pad --model membrane", "paper-dome built --model membrane --json"),
     "scan": (
         "texture-specimen --design paper-dome",

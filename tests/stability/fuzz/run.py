@@ -37,6 +37,7 @@ WHOLE = 0.002
 LEFT_OUT = (
     "pneutouch.mechanics.models.solid.solid_states",
     "pneutouch.mechanics.models.solid.solid_result",
+    "pneutouch.mechanics.models.local.build",
     "pneutouch.workflows.build.refuse",
     "pneutouch.workflows.calibrate.calibrate.calibrate",
     "pneutouch.report.comparison_sheet.comparison_sheet",
@@ -47,6 +48,7 @@ LEFT_OUT = (
     "pneutouch.workflows.respond.run_respond",
     "pneutouch.workflows.scan.draw",
     "pneutouch.workflows.select.select.choose",
+    "pneutouch.workflows.select.shapes.solid_states",
     "pneutouch.workflows.export_reader._simulated",
     "pneutouch.workflows.specimen.build.draw",
     "pneutouch.workflows.sweep.execute._compute",

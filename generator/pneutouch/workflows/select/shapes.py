@@ -36,6 +36,7 @@ VARIANTS: dict[SearchedShape, tuple[dict[str, float], ...]] = {
     "thimble": ({"side": 0.5, "rise": 1.0}, {"side": 1.0, "rise": 1.0}),
     "disc": ({}, {"boss_radius": 0.35, "boss_height": 0.2}),
     "corrugated": ({"rise": 0.1},),
+    "torus": ({"rise": 0.2}, {"rise": 0.3}),
 }
 """Sizes over the inner radius in which each shape is tried: our choice."""
 
