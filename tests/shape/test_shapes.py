@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from itertools import pairwise
 
@@ -13,7 +14,10 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.shape import shape_of
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape import ShapeError, shape_of
 from pneutouch.shape.even import biarc, fitted
 from pneutouch.shape.round import quarter
 from tests.shape.shapes import shipped
@@ -225,3 +229,16 @@ def test_impossible_shapes_are_refused_with_key_and_place(changes, key, words):
     with pytest.raises(InputError) as caught:
         load_scene("paper-dome", {f"membrane.{name}": value for name, value in changes.items()})
     assert words in str(caught.value) and key in str(caught.value)
+
+
+@pytest.mark.parametrize("key", ["torus", "corrugated"])
+def test_a_wall_that_is_as_thick_as_its_bends_allow_has_cells_everywhere(key):
+    made = 0
+    for rise, wall in itertools.product((0.1, 0.2, 0.3, 0.4), np.arange(0.02, 0.45, 0.01)):
+        try:
+            shape = shape_of(key, 9.25, 9.25 * wall, {"rise": 9.25 * rise})
+        except ShapeError:
+            continue
+        assert SolidModel(dome(shape), neo_hookean(0.17)).rest.size
+        made += 1
+    assert made > 20

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue import DesignSource, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.checks import source_of
-from pneutouch.workflows.select.shapes import VARIANTS, select_shapes
+from pneutouch.workflows.select.shapes import VARIANTS, _Search, select_shapes
 
 
 def target(shapes, prefer=None, **given):
@@ -93,3 +93,12 @@ def test_a_height_is_for_shapes():
     with pytest.raises(InputError) as caught:
         validate(Target, content, "here")
     assert "target.max_height_mm" in (caught.value.key, *caught.value.fields)
+
+
+@pytest.mark.parametrize("shape", VARIANTS)
+def test_every_shape_has_radii_to_try_below_a_limit(shape, library):
+    scene = load_scene("paper-dome", {}, library)
+    search_for = _Search(target([shape], max_diameter_mm=24.0, max_height_mm=12.0), scene, library)
+    for sizes in VARIANTS[shape]:
+        radii = search_for._radii(shape, sizes)
+        assert len(radii) == 2 and all(1.0 < radius <= 12.0 for radius in radii)

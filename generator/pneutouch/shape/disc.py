@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from pneutouch.shape.dome import OUTER_WALL
-from pneutouch.shape.even import EvenDome, biarc
+from pneutouch.shape.even import LEAST_BEND, EvenDome, biarc
 from pneutouch.shape.meridian import Line, Point, Segment
 
 
@@ -88,9 +88,9 @@ class CorrugatedDisc(FlatDome):
         """Grooves are wide enough for the wall to follow them on both faces."""
         half = self.inner_radius / (2 * self.grooves + 1)
         bend = 0.25 * (half**2 + self.rise**2) / self.rise
-        if bend <= self.wall_thickness:
+        if bend <= LEAST_BEND * self.wall_thickness:
             return "grooves", (
-                f"the grooves bend with a radius of {bend:.3g} mm, less than the wall's thickness "
+                f"the grooves bend with a radius of {bend:.3g} mm, less than {LEAST_BEND} times the wall's thickness "
                 f"({self.wall_thickness:g} mm): take fewer grooves, a smaller rise or a thinner wall"
             )
         return None

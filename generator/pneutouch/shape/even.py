@@ -22,6 +22,9 @@ _STEP = 1e-5
 _FLAT = 0.99
 """Rise of a normal from which a wall is level."""
 
+LEAST_BEND = 1.1
+"""Least radius over the wall of a bend whose outer face is the shorter one: our choice, as cells there get no width."""
+
 _STRAIGHT = 1e-12
 """Bow of an arc over its chord below which it is a line."""
 
@@ -81,7 +84,7 @@ class EvenDome(DomeShape):
         if self.wall_stations and not _rising(self.wall_stations):
             return "wall_stations", "give two to five pairs [share, factor], from 0 to 1, with factors from 0.2 to 5"
         bends = [piece.radius for piece in self.line if isinstance(piece, Arc) and piece.last < piece.first]
-        if self.wall_stations and min(bends, default=math.inf) <= self.thickest:
+        if self.wall_stations and min(bends, default=math.inf) <= LEAST_BEND * self.thickest:
             tight = f"the inner face bends with a radius of {min(bends):.3g} mm"
             return "wall_stations", f"{tight}, so that a wall of {self.thickest:.3g} mm overlaps itself"
         foot = self.walls()[1]

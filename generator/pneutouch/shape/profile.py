@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.shape.disc import FlatDome
-from pneutouch.shape.even import arc_to
+from pneutouch.shape.even import LEAST_BEND, arc_to
 from pneutouch.shape.meridian import Arc, Line, Point, Segment
 
 _LEVEL = 1e-3
@@ -89,10 +89,10 @@ class Profile(FlatDome):
             yield f"the profile is not level on the axis, at z = {points[-1][1]:.4g} mm: its tip would be sharp"
         yield from self._crossings("inner", self.inner)
         for piece in self.line:
-            if isinstance(piece, Arc) and piece.last < piece.first and piece.radius <= self.thickest:
+            if isinstance(piece, Arc) and piece.last < piece.first and piece.radius <= LEAST_BEND * self.thickest:
                 yield (
                     f"at {self._place(piece.middle)} the inner face bends with a radius of {piece.radius:.3g} mm, so "
-                    f"that a wall of {self.thickest:g} mm overlaps itself; take a radius greater than the wall"
+                    f"that a wall of {self.thickest:g} mm overlaps itself; take at least {LEAST_BEND} times the wall"
                 )
         yield from self._crossings("outer", self.outer)
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from pneutouch.shape.disc import FlatDome
-from pneutouch.shape.even import biarc
+from pneutouch.shape.even import LEAST_BEND, biarc
 from pneutouch.shape.meridian import Arc, Line, Segment
 
 _MIDDLE = 1.0 / 3.0
@@ -31,6 +31,7 @@ class Torus(FlatDome):
     def fault(self) -> tuple[str, str] | None:
         """The ring is wide enough for the wall to follow it on both faces."""
         bend = min(piece.radius for piece in self.line if isinstance(piece, Arc))
-        if bend <= self.thickest:
-            return "rise", f"the ring bends with a radius of {bend:.3g} mm, less than the wall ({self.thickest:.3g} mm)"
+        if bend <= LEAST_BEND * self.thickest:
+            least = f"{LEAST_BEND} times the wall, {LEAST_BEND * self.thickest:.3g} mm"
+            return "rise", f"the ring bends with a radius of {bend:.3g} mm, less than {least}"
         return None

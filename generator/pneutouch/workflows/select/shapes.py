@@ -5,6 +5,7 @@ is solved for. What is found passes the whole ``check``.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -21,7 +22,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
 from pneutouch.results.selection import ShapeRecord, ShapesRecord
 from pneutouch.selection import CandidateResin
-from pneutouch.shape import key_of, shape_of, stated_sizes
+from pneutouch.shape import DomeShape, ShapeError, key_of, shape_of, stated_sizes
 from pneutouch.spec.target import SearchedShape, Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
@@ -46,8 +47,8 @@ BALL_MM = 5.0
 _RADII = (1.0, 0.75)
 """Inner radii tried, over the greatest that the limits of the target leave: our choice."""
 
-_WALL_SHARE, _DRAWN_SHARE, _THICKEST = 0.16, 0.2, 0.4
-"""Wall over the inner radius: at which a search begins, for which the outer sizes are drawn, and the greatest."""
+_WALL_SHARE, _DRAWN_SHARES, _THICKEST = 0.16, (0.2, 0.15, 0.1, 0.05), 0.4
+"""Walls over the inner radius: at which a search begins, for which the outer sizes are drawn, and the greatest."""
 
 _SOLVES = 7
 _MET = 0.3
@@ -85,8 +86,8 @@ class ShapeTrial:
 
 @dataclass(frozen=True)
 class ShapeDesign:
-    """The best design of a shape: its trial, its rated pressure (MPa), and its sensitivity under the small ball over
-    that under the plate; None where no straight line explains it."""
+    """The best design of a shape, its rated pressure (MPa), and its sensitivity under the small ball over the plate's;
+    None where no straight line explains it."""
 
     trial: ShapeTrial
     rated: float
@@ -231,8 +232,7 @@ class _Search:
 
     def _pressures(self) -> list[float]:
         """Driving pressures that are tried, MPa: the target's, else none and the middle one of the base."""
-        stated_kPa = self.target.target.driving_pressure_kPa
-        if stated_kPa is not None:
+        if (stated_kPa := self.target.target.driving_pressure_kPa) is not None:
             return [stated_kPa * KPA]
         listed_kPa = sorted(self.base.design.pneumatics.driving_pressures_kPa)
         return sorted({0.0, listed_kPa[len(listed_kPa) // 2] * KPA})
@@ -243,8 +243,7 @@ class _Search:
         figures, given = self.target.target, self.target.given
         if given.inner_radius_mm is not None:
             return [given.inner_radius_mm]
-        unit = shape_of(shape, 10.0, 10.0 * _DRAWN_SHARE, {name: 10.0 * share for name, share in sizes.items()})
-        limits = []
+        unit, limits = _drawn(shape, sizes), []
         if figures.max_diameter_mm is not None:
             limits.append(0.5 * figures.max_diameter_mm * 10.0 / unit.outer_radius)
         if figures.max_height_mm is not None and unit.outer_height > 0.0:
@@ -263,7 +262,7 @@ class _Search:
         wall, wanted_kPa_per_N = self.target.given.wall_thickness_mm, self.target.target.sensitivity_kPa_per_N
         low, high, at = self._bounds(radius, wall)
         known: dict[float, float] = {}
-        best: ShapeTrial | None = None
+        best = None
         while low <= high and len(known) < _SOLVES and (at := min(max(_rounded(at), low), high)) not in known:
             found = self._trial(shape, sizes, resin, *((radius, at) if wall is None else (at, wall)), pressure)
             if found is None:
@@ -341,6 +340,15 @@ class _Search:
         return not misses
 
 
+def _drawn(shape: str, sizes: Mapping[str, float]) -> DomeShape:
+    """The shape at an inner radius of 10 mm, with the greatest of `_DRAWN_SHARES` that it can have."""
+    own = {name: 10.0 * share for name, share in sizes.items()}
+    for wall in _DRAWN_SHARES[:-1]:
+        with suppress(ShapeError):
+            return shape_of(shape, 10.0, 10.0 * wall, own)
+    return shape_of(shape, 10.0, 10.0 * _DRAWN_SHARES[-1], own)
+
+
 def _misses(target: Target, trial: ShapeTrial) -> dict[str, float]:
     """Requirements that a trial misses, each with the share by which it does."""
     wanted, figures, misses = target.target, trial.figures, {}
@@ -375,8 +383,8 @@ def _slope(known: Mapping[float, float]) -> float:
 def _next(known: Mapping[float, float], low: float, high: float, *, falls: bool) -> float:
     """Size to try next, by a secant in logarithms within the bracket of what is known; ``falls``: the sensitivity falls
     with the size."""
-    low = max([low, *(size for size, gap in known.items() if (gap > 0) == falls)])
-    high = min([high, *(size for size, gap in known.items() if (gap > 0) != falls)])
+    low = max(low, *(size if (gap > 0) == falls else low for size, gap in known.items()))
+    high = min(high, *(size if (gap > 0) != falls else high for size, gap in known.items()))
     (a, first), (b, second) = [*known.items()][-2:] if len(known) > 1 else ((1.0, 0.0), *known.items())
     # Of membranes the sensitivity falls about as the first power of the wall.
     slope = (second - first) / float(np.log(b / a)) if len(known) > 1 else (-1.0 if falls else 1.0)
