@@ -242,3 +242,11 @@ def test_a_wall_that_is_as_thick_as_its_bends_allow_has_cells_everywhere(key):
         assert SolidModel(dome(shape), neo_hookean(0.17)).rest.size
         made += 1
     assert made > 20
+
+
+@pytest.mark.parametrize("points", [[[9.25, 0.0], [0.0, 0.0]], [[9.25, 0.0], [5.0, -2.0, 6.0], [0.0, -2.0]]])
+def test_a_profile_without_room_behind_it_is_refused_and_takes_a_cavity(points, library):
+    changes = {"membrane.shape": "profile", "membrane.profile_mm": points}
+    with pytest.raises(InputError):
+        load_scene("paper-dome", changes, library)
+    load_scene("paper-dome", {**changes, "membrane.cavity_depth_mm": 4.0}, library)

@@ -88,6 +88,12 @@ class Profile(FlatDome):
         if abs(math.atan2(tip[1], -tip[0])) > _LEVEL:
             yield f"the profile is not level on the axis, at z = {points[-1][1]:.4g} mm: its tip would be sharp"
         yield from self._crossings("inner", self.inner)
+        behind = max(0.0, -min(piece.bounds()[2] for piece in self.line))
+        if behind > self.cavity_depth or self.inner_height <= self.floor:
+            yield (
+                f"the inner face lies up to {behind:.4g} mm behind its rim, and a cavity of {self.cavity_depth:g} mm "
+                "leaves it no room: give membrane.cavity_depth_mm"
+            )
         for piece in self.line:
             if isinstance(piece, Arc) and piece.last < piece.first and piece.radius <= LEAST_BEND * self.thickest:
                 yield (
