@@ -14,6 +14,7 @@ from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.drawn_profile import drawn_profile
 from pneutouch.shape.profile import Profile
+from pneutouch.shape.round import Cap
 
 QUARTER = math.tan(math.pi / 8)
 ROUND = [(10.0, 0.0, 0.0), (10.0, 4.0, QUARTER), (6.0, 8.0, 0.0), (0.0, 8.0, 0.0)]
@@ -47,6 +48,18 @@ def test_arcs_one_after_another_stay_the_arcs_of_their_circle(turn, radius, tmp_
     shape = Profile(radius, 0.1 * radius, 0.0, tuple((r, z, c) for r, z, c in corners))
     along = np.concatenate([piece.along(np.linspace(0.0, 1.0, 9)) for piece in shape.line])
     assert np.hypot(*along.T) == pytest.approx(radius, abs=1e-4 * radius)
+
+
+@given(radius=st.floats(4.0, 20.0), rise=st.floats(0.2, 0.97), digits=st.integers(3, 9))
+def test_one_arc_from_rim_to_pole_is_the_cap_however_its_numbers_are_rounded(radius, rise, digits, tmp_path_factory):
+    radius, rise = round(radius, digits), round(rise * radius, digits)
+    bulge = round(math.tan(0.5 * math.atan(rise / radius)), 6)
+    corners = drawn_profile(drawing(tmp_path_factory.mktemp("dxf"), [(radius, 0.0, bulge), (0.0, rise, 0.0)]))
+    shape = Profile(radius, 0.1 * radius, 0.0, tuple((r, z, c) for r, z, c in corners))
+    cap = Cap(radius, 0.1 * radius, rise)
+    assert shape.fault is None
+    assert [face[-1].end[0] for face in (shape.inner, shape.outer)] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert shape.wall_volume == pytest.approx(cap.wall_volume, rel=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -250,3 +250,11 @@ def test_a_profile_without_room_behind_it_is_refused_and_takes_a_cavity(points, 
     with pytest.raises(InputError):
         load_scene("paper-dome", changes, library)
     load_scene("paper-dome", {**changes, "membrane.cavity_depth_mm": 4.0}, library)
+
+
+@pytest.mark.parametrize("cavity", [0.1, 0.3, 0.6, 4.0])
+def test_the_limits_of_a_flat_wall_do_not_depend_on_the_cavity_behind_it(cavity, library):
+    changes = {"membrane.shape": "disc", "membrane.cavity_depth_mm": cavity, "pneumatics.driving_pressures_kPa": [5.0]}
+    limits = evaluate("paper-dome", changes, library=library).prediction.limits
+    deep = evaluate("paper-dome", {**changes, "membrane.cavity_depth_mm": 3.0}, library=library).prediction.limits
+    assert limits.limit_point == pytest.approx(deep.limit_point, rel=1e-4)

@@ -55,8 +55,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     stays negative (see `run_checks.check_plausible`). Noise is that of single samples without contact, from the spread
     within blocks and between their means about a line; drift is the pressure's slope before contact.
 
-    Raises InputError for a leak or injection, a plate that never moves or moves backwards, no contact or no usable
-    press."""
+    Raises InputError for a leak or injection, a plate that stands or moves backwards, no contact or no usable press."""
     if run.kind in ("leak", "injection"):
         raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)
     travels = _travel(blocks, rig)

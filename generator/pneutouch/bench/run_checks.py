@@ -82,8 +82,7 @@ class ExpectedRun:
 def check_plausible(
     curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
 ) -> tuple[str, ...]:
-    """Questions about a run that may nevertheless be correct and is used; where a channel is late, on that and the
-    time alone.
+    """Questions about a run that may be correct and is used; where a channel is late, on that and the time alone.
 
     Without a prediction (``expected`` None) only the record itself is checked: signs, times, driving pressure. Raises
     InputError for the impossible: a wrong sign, force and pressure swapped, a record begun inside the dome, a magnitude

@@ -106,8 +106,7 @@ class Body:
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 
     def under_ceilings(self, up: float) -> float:
-        """Space in mm3 between the bed and faces that overhang by more than 45 degrees; ``up`` 1, or -1 if turned
-        over."""
+        """Space in mm3 between the bed and faces over 45 degrees of overhang; ``up`` 1, or -1 if turned over."""
         areas = 0.5 * np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
         height, downwards = up * self.corners[:, :, 2].mean(axis=1), -up * areas[:, 2]
         steep = downwards > math.sqrt(0.5) * np.linalg.norm(areas, axis=1)

@@ -147,8 +147,7 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def at_rest(body: "RigidObject", sensor: Sensor) -> tuple[float, float]:
-    """Height of the object at first contact with the unloaded dome, and distance of that contact from the object's
-    axis, mm."""
+    """Height of the object at first contact with the unloaded dome, and its distance from the object's axis, mm."""
     # An object off the axis touches first on its side of the plane of symmetry.
     r, z = sensor.dome.shape.points(np.linspace(1.0, 0.0, _POINTS), np.ones(1))[:, 0].T
     return first_contact(body, np.abs(r - sensor.protocol.offset), z)

@@ -63,8 +63,7 @@ def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, st
 
 
 def gauge_record(evaluation: Evaluation) -> GaugeFigures:
-    """The gauge of a design and the smallest force at each driving pressure; ``name`` is None where the paper's is
-    assumed."""
+    """The gauge of a design and the smallest force at each driving pressure; ``name`` None: the paper's is assumed."""
     scene, reading, prediction = evaluation.scene, reading_of(evaluation.scene), evaluation.prediction
     record = GaugeFigures(
         name=scene.design.pneumatics.gauge,

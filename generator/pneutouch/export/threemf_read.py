@@ -53,8 +53,7 @@ def checked_package(path: Path) -> bytes:
     """The package at ``path`` as a plain archive of checked parts.
 
     Raises InputError if it is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated, has
-    more than `MOST_PARTS` parts, or holds XML with a document type, entities or too deep nesting, or too many
-    components.
+    more than `MOST_PARTS` parts, or holds XML with a document type, entities, deep nesting or too many components.
     """
     content = read_bytes(path, MOST_BYTES, "3MF file")
     _check_end(content, path)

@@ -164,8 +164,7 @@ def ratings(
     calibration: "SensorCalibration | None" = None,
     numerical: float = LIMIT_ERROR,
 ) -> list[Rating]:
-    """Ratings of n sensors of ``material`` from ``printer``, from the nominal ``limits`` that a model gives, in one
-    pass.
+    """Ratings of n sensors of ``material`` from ``printer``, from a model's nominal ``limits``, in one pass.
 
     All limits but the gauge range are met at pressures proportional to the modulus, so all have the uncertainty of the
     limit pressure. The scatter of the break strain is covered by using the least elongation at break instead.

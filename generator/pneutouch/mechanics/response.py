@@ -1,8 +1,7 @@
 """Figures from loading curves; predicted and measured curves are treated by the same functions.
 
 A curve is three arrays of one length: indentation (mm), contact force (N), pressure rise (kPa). Definitions follow the
-paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else the usual ones of sensor
-makers.
+paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else those of sensor makers.
 """
 
 from typing import Any, Generic, NamedTuple, TypeVar

@@ -281,8 +281,7 @@ def process_values(process: str | None, material: str | None, library: Library) 
 def profile_note(
     values: dict[str, dict[str, Any]], library: Library, *, process: str | None, material: str | None
 ) -> str:
-    """Note on the profile, and on the resin if none was given, that `process_values` took, with other profiles of that
-    resin."""
+    """Note on the profile, and on the resin if none was given, that `process_values` took, with its other profiles."""
     profile, chosen = str(values["print"]["profile"]), str(values["membrane"]["material"])
     resin: Material = library.load("materials", chosen)
     printers = library.readable("printers", Printer)

@@ -39,8 +39,7 @@ _MISSED = 1.0e3
 class GradeTarget:
     """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, equal at all within ``same_within``.
 
-    force: what the range must reach (N); None if it need not. widest: True if the force range shall be as wide as
-    possible."""
+    force: what the range must reach (N); None if it need not. widest: True for the widest force range."""
 
     sensitivity: float
     tolerance: float
@@ -104,8 +103,7 @@ def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
 
 
 def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
-    """Cost that the search minimizes: the worst share of the aims; for the widest range, less with force once all are
-    met.
+    """Cost that the search minimizes: the worst share of the aims; for the widest range, less with force once all hold.
 
     ``spare`` is the share of every tolerance that may be used up for the widest range.
     """

@@ -16,8 +16,8 @@ from pneutouch.shape.meridian import Arc, Line, Point, Segment
 _LEVEL = 1e-3
 """Greatest angle in rad between pieces that go on smoothly, and of the pole to level: that of hand-written numbers."""
 
-_SHORT = 1e-9
-"""Length in mm below which a line between two roundings is left out."""
+_CLOSE = 1e-3
+"""Length in mm by which roundings may miss or overlap each other: numbers of drawings are rounded."""
 
 _ALONG = np.linspace(0.0, 1.0, 9)
 
@@ -36,15 +36,20 @@ class Profile(FlatDome):
         """Lines and roundings, with the rim at the height 0."""
         pieces: list[Segment] = []
         here, cuts = self._point(0), self._cuts
-        for k in range(1, len(self.profile)):
-            corner, behind = self._point(k), self._point(k - 1)
-            start = _towards(corner, behind, cuts[k])
-            if math.dist(here, start) > _SHORT:
+        last = len(self.profile) - 1
+        for k in range(1, last + 1):
+            corner, cut = self._point(k), cuts[k]
+            start = _towards(corner, self._point(k - 1), cut)
+            if math.dist(here, start) > (_CLOSE if k < last else 0.0):
                 pieces.append(Line(here, start, ""))
-            here = start
-            if cuts[k] > 0.0:
-                here = _towards(corner, self._point(k + 1), cuts[k])
-                pieces.append(arc_to(start, _direction(behind, corner), here))
+                here = start
+            if cut > 0.0:
+                ahead = self._point(k + 1)
+                near = k + 1 == last and abs(math.dist(corner, ahead) - cut) <= _CLOSE
+                end = ahead if near else _towards(corner, ahead, cut)
+                # From its end back: the pole stays level, whatever the numbers were rounded to.
+                pieces.append(arc_to(end, _direction(ahead, corner), here).reverse())
+                here = end
         return tuple(pieces)
 
     @property
@@ -54,7 +59,9 @@ class Profile(FlatDome):
         return None if why is None else ("profile", why)
 
     def _point(self, k: int) -> Point:
-        r, z, _ = self.profile[k]
+        (r, z, _), (tip_r, tip_z, _) = self.profile[k], self.profile[-1]
+        if k == len(self.profile) - 2 and abs(tip_z - z) <= _LEVEL * (r - tip_r):
+            z = tip_z
         return r, z - self.profile[0][1]
 
     @property
@@ -89,7 +96,7 @@ class Profile(FlatDome):
             yield f"the profile is not level on the axis, at z = {points[-1][1]:.4g} mm: its tip would be sharp"
         yield from self._crossings("inner", self.inner)
         behind = max(0.0, -min(piece.bounds()[2] for piece in self.line))
-        if behind > self.cavity_depth or self.inner_height <= self.floor:
+        if behind > self.cavity_depth + 1e-9 or self.inner_height <= self.floor:
             yield (
                 f"the inner face lies up to {behind:.4g} mm behind its rim, and a cavity of {self.cavity_depth:g} mm "
                 "leaves it no room: give membrane.cavity_depth_mm"
@@ -111,7 +118,7 @@ class Profile(FlatDome):
                 yield f"a corner of {math.degrees(turn):.3g} degrees at {place}: give it a radius, [r, z, radius]"
         for k, (one, other) in enumerate(pairwise(cuts)):
             length = math.dist(self._point(k), self._point(k + 1))
-            if one + other > length + _SHORT:
+            if one + other > length + _CLOSE:
                 yield (
                     f"between the points {k} and {k + 1}, {length:.4g} mm apart, the roundings need {one + other:.4g} "
                     "mm: take smaller radii"

@@ -42,11 +42,18 @@ def designed(library, resin: str) -> Sensor:
 
 
 def trial(
-    nominal: Sensor, pressures: Sequence[float], runs: int, rng: np.random.Generator, model: str = "atlas"
+    nominal: Sensor,
+    pressures: Sequence[float],
+    runs: int,
+    rng: np.random.Generator,
+    model: str = "atlas",
+    depth: float | None = None,
 ) -> Trial:
-    """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa, first contact read late or early."""
+    """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa, first contact read late or early;
+    ``depth`` in mm (None: 0.75 R0)."""
     specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
-    pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.dome.inner_radius, model)
+    depth = depth or 0.75 * nominal.dome.inner_radius
+    pressed = press_curves(specimen, [p * KPA for p in pressures], depth, model)
     counted = rng.spawn(1)[0]
     curves = _runs(_deviated(pressed.curves, counted), pressures, runs, nominal, rng)
     late = OFFSET_PRIOR * counted.standard_normal()

@@ -17,6 +17,7 @@ from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.parts import assemble
 from pneutouch.units import KPA
 from tests.bench.calibrate.sensors import disturbed
+from tests.bench.calibrate.simulated import trial
 
 SHAPES = {
     "cap": {"membrane.rise_mm": 4.6},
@@ -88,6 +89,26 @@ def test_a_specimen_is_found_from_its_runs(scene):
     assert (off < found.half_width).all() and (off < 0.06).all()
     tests = further_tests(found, 0.02)
     assert tests and all(one.gain >= 1.0 for one in tests)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["cap", "disc"])
+def test_intervals_hold_specimens_whose_wall_remembers_and_whose_contact_is_read_late(shape, library):
+    sizes = {"membrane.boss_radius_mm": 2.77, "membrane.boss_height_mm": 2.77} if shape == "disc" else {}
+    changes = {"membrane.shape": shape, **sizes, "pneumatics.dead_volume_mL": 1.5}
+    scene = load_scene("paper-dome", changes, library)
+    sensor = sensor_of(assemble(scene)).replace(waves=0)
+    depth = min(sensor.protocol.depth, 0.75 * sensor.dome.inner_radius)
+    chosen = parameters(sensor.replace(depth=depth), scene.membrane_material, scene.printer)
+    off = []
+    for seed in range(10):
+        one = trial(sensor, (0.0, 8.0, 16.0), 3, np.random.default_rng(seed), "solid", sensor.protocol.depth)
+        found = fit(one.seen, sensor.replace(depth=depth), chosen)
+        truth = np.log([one.truth.wall.shear_modulus, one.truth.dome.wall_thickness])
+        places = [found.parameters.fitted.index(k) for k in (MODULUS, WALL)]
+        off.append(np.abs(found.solution.at[places] - truth) / found.half_width[places])
+    assert (np.mean(np.array(off) < 1.0, axis=0) >= 0.9).all()
+    assert (np.sqrt(np.mean(np.square(off), axis=0)) < 0.6).all()
 
 
 def test_a_press_off_the_axis_of_another_shape_is_refused(library):

@@ -7,6 +7,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.fitted_atlas import (
     FLOOR,
+    OTHER_SHAPES,
     AtlasModel,
     FittedContact,
     SharedUnknowns,
@@ -16,8 +17,8 @@ from pneutouch.bench.calibrate.fitted_atlas import (
 )
 from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths, information
-from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
-from pneutouch.bench.calibrate.parameters import LOGARITHMIC, MODULUS, NAMES, CalibrationParameters
+from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, onset_errors, points_of
+from pneutouch.bench.calibrate.parameters import LOGARITHMIC, MODULUS, NAMES, OFFSET_PRIOR, CalibrationParameters
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.coverage import other_shape
@@ -106,6 +107,9 @@ def fit(
     too few points or a sensor that the atlas does not cover, ComputationError where no fit is found."""
     sensor = sensor.replace(ambient_pressure=observations.ambient)
     points, count = points_of(observations), len(parameters.fitted)
+    if other_shape(sensor):
+        points = points._replace(onset_error=onset_errors(observations, OFFSET_PRIOR))
+        floor = OTHER_SHAPES * floor
     if not parameters.priors and int(points.use.sum()) <= count:
         raise InputError(
             f"calibrate: {int(points.use.sum())} values for {count} parameters without priors; there must be more "

@@ -29,8 +29,7 @@ class Covariance:
         information: Information of the data alone, at the average scatter of the runs, (k, k).
         freedom: Degrees of freedom of the scatter between runs, infinite where too few runs are repeated to show it.
         share: Share of the data in each parameter's variance, (k,).
-        considered: Shift of each estimate by one standard deviation of each uncertain parameter not fitted, (k, 5); in
-            ``matrix``.
+        considered: Shift of each estimate by one standard deviation of each uncertain parameter not fitted, (k, 5).
         even: Parameters that have a uniform prior, (5,).
         runs: Number of runs and injections with a point in the fit.
         alone: Number of the only run that determines each parameter, -1 where several do, (k,)."""
@@ -221,8 +220,7 @@ def _root(normal: Array) -> Array:
 def _at_least(score: Array, data: Array, normal: Array, held: Array, run_factor: float) -> Array:
     """Scatter ``score``, raised where it is less than that of independent points.
 
-    A direction that one run alone determines (``held``) shows no scatter; there the average one of the others is
-    assumed."""
+    A direction that one run alone determines (``held``) shows no scatter; the others' average is assumed there."""
     root = _root(normal)
     least = root @ data @ root / run_factor + (1.0 - 1.0 / run_factor) * held
     seen, axes = np.linalg.eigh(root @ score @ root - least)

@@ -70,7 +70,8 @@ class ObservationPoints(NamedTuple):
     Curves, (c, m): travel (mm), force (N), pressure rise (MPa), standard errors of force (N) and rise (MPa), there.
     Driving pressure of each curve, (c,), MPa. Injections, (i, n): volume (mm3), pressure and its standard error (MPa),
     known. travel_error, (c,): standard error of the run's first contact, mm. group, (c,): index of its driving
-    pressure."""
+    pressure. onset_error, (c,): standard error of the first contact that all runs at that pressure share, mm; 0: none.
+    """
 
     travel: Array
     force: Array
@@ -85,6 +86,7 @@ class ObservationPoints(NamedTuple):
     known: Flags
     travel_error: Array
     group: Array
+    onset_error: Array
 
     @property
     def force_slope(self) -> Array:
@@ -130,8 +132,7 @@ class ObservationPoints(NamedTuple):
 
     @property
     def clusters(self) -> Array:
-        """Number of the curve or injection behind each value, (N,): the values that one run's gain and zero move
-        together."""
+        """Number of the curve or injection behind each value, (N,): values that one run's gain and zero move."""
         (c, m), (i, n) = self.travel.shape, self.volume.shape
         curve = np.repeat(np.arange(c), m)
         return np.concatenate([curve, curve, c + np.repeat(np.arange(i), n)])
@@ -158,7 +159,8 @@ def points_of(observations: Observations) -> ObservationPoints:
     pressures_kPa = observations.driving_pressures_kPa
     group = np.array([pressures_kPa.index(curve.run.driving_pressure_kPa) for curve in observations.curves])
     there, known, errors = there.astype(bool), known.astype(bool), _travel_errors(observations.curves)
-    points = ObservationPoints._make((*curve_columns, there, driving, *injected, known, errors, group))
+    columns = (*curve_columns, there, driving, *injected, known, errors, group, np.zeros(group.size))
+    points = ObservationPoints._make(columns)
     if points.there.sum() + points.known.sum() < 2:
         raise InputError("calibrate: one point is not enough; there must be at least two without the origin")
     return points
@@ -200,6 +202,12 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
     spread = np.sqrt(squares / free) if free else 0.0
     # The variance of a median is pi/2 times that of the mean, for many normal values.
     return np.array([spread * np.sqrt(0.5 * np.pi / max(onsets.size, 1)) for onsets in groups])
+
+
+def onset_errors(observations: Observations, unknown: float) -> Array:
+    """Standard errors of the first contacts as each record states them, mm, (c,); ``unknown`` where it does not."""
+    errors = np.array([curve.onset_error for curve in observations.curves])
+    return np.where(np.isfinite(errors), errors, unknown)
 
 
 def _slopes(travel: Array, values: Array) -> Array:

@@ -51,8 +51,7 @@ class SuggestedTest:
 
 
 def further_tests(fit: CalibrationFit, rated: float) -> list[SuggestedTest]:
-    """Candidate tests at no more than the rated pressure (MPa), the one that helps most first; none without free
-    parameters.
+    """Candidate tests at no more than the rated pressure (MPa), most helpful first; none without free parameters.
 
     Parameters on a bound are not free: they are left as they are."""
     places = np.flatnonzero(~fit.solution.bound)
@@ -152,6 +151,7 @@ def _planned(travel: Array, driving: Array, volume: Array) -> ObservationPoints:
         known=v > 0,
         travel_error=runs,
         group=runs.astype(int),
+        onset_error=runs,
     )
 
 

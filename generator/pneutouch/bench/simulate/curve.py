@@ -75,8 +75,7 @@ def press_curves(
     sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
 ) -> PressCurves:
     """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge does not end the range, as the
-    simulated rig clips its reading. A shear after the press is left out; off the axis at most `OFF_AXIS_STEPS` are
-    taken.
+    simulated rig clips its reading. A later shear is left out; off the axis at most `OFF_AXIS_STEPS` are taken.
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
     """
@@ -173,8 +172,7 @@ def line_pressure(pushed: Array, dead_volume: float, ambient: float) -> Array:
 
 
 def sensor_pressure(pushed: Array, inflation: InflationCurve, dead_volume: float, ambient: float) -> Array:
-    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into the closed, unpressed sensor; NaN past the limit
-    point.
+    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into the closed sensor at rest; NaN past the limit point.
 
     Boyle with a cavity that swells: (p + pa)(V(p) + Vd) = pa (V0 + Vd + pushed), with V(p) of the free inflation.
     """

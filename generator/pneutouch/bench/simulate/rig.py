@@ -100,8 +100,7 @@ class SimulatedSpecimens:
 def ageing_factor(scatter: ScatterModel, days: float) -> float:
     """Factor on the modulus after ``days``: its logarithm grows linearly over the first year, then stays.
 
-    The paper measured only at the beginning and the end of a year (Table 1); the course between and after is our
-    choice."""
+    The paper measured only at the beginning and the end of a year (Table 1); the course between is our choice."""
     return float(np.exp(scatter.ageing * min(days / YEAR, 1.0)))
 
 
@@ -251,8 +250,7 @@ _DECIMALS = {"time_s": 6, "position_mm": 5, "force_N": 5, "pressure_kPa": 6, "vo
 
 
 def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:
-    """Columns (`_DECIMALS`) as CSV or parquet, marked as simulated. Raises InputError if pyarrow is required and
-    missing."""
+    """Columns (`_DECIMALS`) as CSV or parquet, marked as simulated. Raises InputError if pyarrow is missing."""
     rounded = {name: np.round(values, _DECIMALS[name]) + 0.0 for name, values in columns.items()}
     if not parquet:
         from pandas import DataFrame

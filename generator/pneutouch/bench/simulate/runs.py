@@ -250,8 +250,7 @@ def loop_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> di
 
 
 def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
-    """Relaxation of force and pressure, percent of the value at 1 s: loss from then to the end of the hold, and per
-    decade.
+    """Relaxation of force and pressure, percent of the value at 1 s: loss to the end of the hold, and per decade.
 
     The drift of the force's zero and of the gas in that time is included, as in the rig's readings. The slope is the
     least-squares line through instants even in log time; a loss counts as positive.

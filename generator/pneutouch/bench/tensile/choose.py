@@ -77,8 +77,7 @@ SOFT = 0.1
 """Shear modulus, MPa, below which a wall is stretched further (`REACHED_SOFT`)."""
 
 REACHED, REACHED_SOFT = 2.0, 2.5
-"""Uniaxial stretches that walls, and walls softer than `SOFT`, reach: the measured ones in the module's text, rounded
-up."""
+"""Uniaxial stretches that walls, and walls softer than `SOFT`, reach: those in the module's text, rounded up."""
 
 
 def reached_stretch(shear_modulus: float) -> float:

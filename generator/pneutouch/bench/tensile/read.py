@@ -333,8 +333,7 @@ def _agrees(
 
 
 def _loading(curve: TensionCurve) -> TensionCurve:
-    """Points up to the greatest stress, each at a greater stretch than before. Raises InputError if the stretch
-    falls."""
+    """Points up to the greatest stress, each at a greater stretch. Raises InputError if the stretch falls."""
     stretch, stress, notes = curve.stretch, curve.stress, list(curve.notes)
     last = int(np.argmax(stress))
     if (stress[last:] < _BROKEN * stress[last]).any():

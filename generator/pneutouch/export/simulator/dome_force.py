@@ -106,8 +106,7 @@ class DomeForce:
         return force, pressure_kPa, IN_RANGE
 
     def press(self, model: Any, data: Any) -> None:
-        """Add the force of the dome to its joint, and carry the weight of the moving wall, which the force holds
-        already."""
+        """Add the force of the dome to its joint, and carry the moving wall's weight, which the force holds already."""
         force, _, _ = self.read(float(data.qpos[self.place]))
         axis, gravity = data.xaxis[self.joint], model.opt.gravity
         weight = self.mass * sum(float(a) * float(g) for a, g in zip(axis, gravity, strict=True))

@@ -18,8 +18,7 @@ from pneutouch.body.section import Window
 from pneutouch.export.voxels.raster import RecentLayers, SkinCompensation, VoxelBody, VoxelJob, interior, reach_for
 
 BLOCK = (48, 16, 32)
-"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction, ranked in about a second; our
-choice."""
+"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm each way, ranked in about a second; our choice."""
 
 _WIDTH = 1.5
 """Standard deviation of the Gaussian that makes the energy, divided by the mean pitch: Ulichney's choice."""
@@ -124,8 +123,7 @@ class Thresholds:
 def _shifts(block: int, row: Indices, column: Indices, seed: int) -> tuple[Indices, Indices, Indices]:
     """Three whole numbers from 0 to 2^20 for blocks of space, arrays of one shape: mixed bits of their place.
 
-    The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same on every
-    machine.
+    The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same everywhere.
     """
     place = (np.uint64(seed + 1) << np.uint64(48)) + (np.uint64(block + 1) << np.uint64(32))
     mixed = place + (row.astype(np.uint64) << np.uint64(16)) + column.astype(np.uint64)

@@ -16,8 +16,7 @@ from pneutouch.arrays import Array, Index
 
 @lru_cache
 def pieces(degree: int) -> Array:
-    """Coefficients (degree + 1, degree + 1) of the B-splines that are nonzero in a cell, as polynomials of the position
-    u.
+    """Coefficients (degree + 1, degree + 1) of the B-splines nonzero in a cell, as polynomials of the position u.
 
     Row k holds the factors of u^k, each column one spline. By the recursion of de Boor (1972) on uniform knots.
     """

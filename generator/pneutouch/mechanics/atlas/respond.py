@@ -32,8 +32,7 @@ class AtlasResponse(NamedTuple):
     ends: number in `ENDS`. near_buckling: the wall would buckle within `NEAR` of further travel, where the table is
     less accurate. range_end: mm of indentation. contact_radius: at range_end. Curves run from first contact to
     range_end in equal steps. max_stretch: greatest over the range, with the inflated state. Rows of sensors without a
-    curve (beyond the limit point, outside the box, range of no length) are NaN; limit_pressure is NaN only outside the
-    box.
+    curve (beyond the limit point, outside the box, range of no length) are NaN; limit_pressure only outside the box.
     """
 
     lines: Figures[Array]

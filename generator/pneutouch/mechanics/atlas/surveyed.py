@@ -240,8 +240,7 @@ class SurveyedDome:
         self.volume_unit = self.rest if rises else 1.0
 
     def swelling(self, pressure: float) -> float | None:
-        """Inflation for `survey` of a dome that is driven to a pressure (mu); None: to the limit point, which is
-        near."""
+        """Inflation for `survey` of a dome that is driven to a pressure (mu); None: to the near limit point."""
         run, mu = self.run, self.solid.mu
         swollen = float(np.interp(_SWOLLEN * run.volume[0], run.volume, run.pressure)) / mu
         wanted = max(_MORE_PRESSURE * pressure, swollen)

@@ -71,8 +71,7 @@ class ContactRatio:
 
 
 _BEYOND, _FIRST = 1.05, 1e-3
-"""Travel given for an end that is not reached, over the last travel; least injected volume of a ratio, over the
-greatest."""
+"""Travel of an end that is not reached, over the last travel; least injected volume of a ratio, over the greatest."""
 
 _RING = 0.01
 """Change of the logarithm of the force by the ring that ends the ratio: a choice. Beyond it the force doubles within a

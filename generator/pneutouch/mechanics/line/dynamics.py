@@ -110,8 +110,7 @@ class SensorDynamics:
         return value
 
     def at_once(self) -> "SensorDynamics":
-        """The sensor with an elastic wall of the instantaneous stiffness; its gain is relative to the slow reading with
-        that wall."""
+        """The sensor with an elastic wall of the instantaneous stiffness; gain relative to the slow reading with it."""
         stiff = self.stiffening + sum(self.excess)
         return replace(self, excess=(), times=(), stiffening=stiff)
 

@@ -148,8 +148,7 @@ def _limit(dynamics: SensorDynamics, frequency: float) -> str:
 
 
 _DAMPING = 14.0
-"""Damping a T of the inverse transform: what wraps around is reduced to 1e-6 of its size, and rounding errors grow to
-1e-10."""
+"""Damping a T of the inverse transform: wrap-around falls to 1e-6 of its size, and rounding errors grow to 1e-10."""
 
 _STEPS = 2048
 """Number of samples of a step response."""

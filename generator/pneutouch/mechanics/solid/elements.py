@@ -163,8 +163,7 @@ class Cavity:
         self._form = np.pi * np.einsum("q,qi,qj,qk->ijk", w, value, value, slope).reshape(n * n, n)
 
     def _parts(self, nodes: Array) -> tuple[Array, Array, Array, Array]:
-        """Coordinates r and z of the edges' nodes (n_edges, n), the form's product with z (n_edges, n, n), and with
-        r."""
+        """Coordinates r and z of the edges' nodes (n_edges, n), the form's product with z and r (n_edges, n, n)."""
         line = nodes[self.edges]
         r, z = line[..., 0], line[..., 1]
         by_z = (z @ self._form.T).reshape(-1, self._n, self._n)

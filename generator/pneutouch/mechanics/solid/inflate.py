@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 _LIQUID = 30.0
 _FIRST_GROWTH, _LARGEST_GROWTH, _SMALLEST_GROWTH = 0.10, 0.25, 1.0e-4
 _EMPTYING = 0.02
+_HEMISPHERE = 2.0 / 3.0 * np.pi
 _MAX_STATES = 400
 
 
@@ -151,11 +152,12 @@ def inflate(
     """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
 
     to_pressure: stop once this gauge pressure (MPa) or the limit point is reached; None: go on to ``past_limit`` times
-    the limit point's volume. largest: multiple of the unloaded volume at which the path ends in any case, as it does at
-    the first state that is ``enough``. Raises NoConvergenceError if the volume steps become too small before a limit
-    point."""
+    the limit point's volume. The path ends in any case at ``largest`` times the volume at rest, or a hemisphere's if
+    that is more, and at the first state that is ``enough``. Raises NoConvergenceError where volume steps become too
+    small before a limit point."""
     path = [rest_state(solid)]
-    rest = path[0].unit.volume
+    # The cavity behind a flat wall may be next to nothing: multiples of it say nothing of the wall.
+    rest = max(path[0].unit.volume, _HEMISPHERE)
     sign = -1.0 if to_pressure is not None and to_pressure < 0.0 else 1.0
     growth, limit = _FIRST_GROWTH if sign > 0.0 else _EMPTYING, None
     while len(path) < _MAX_STATES:

@@ -37,8 +37,7 @@ State = TypeVar("State", bound=_Balanced)
 def line_search(
     trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
 ) -> State | None:
-    """Backtrack from the full step until the energy satisfies Armijo's condition; returns the state, None if it never
-    does.
+    """Backtrack from the full step until the energy satisfies Armijo's condition; returns the state, or None.
 
     trial(share): change of the energy at a share of the step and a function that returns the state there; None if that
     state is impossible. slope: derivative of the energy along ``step`` (size,), negative. Where the change is below the

@@ -308,8 +308,7 @@ def _around(d: Array) -> Array:
 
 
 def _number(solid: SolidModel) -> Index:
-    """Numbers (n_nodes, 3) of the unknowns in the axisymmetric solid's order, -1 if fixed; a and c on the axis
-    share."""
+    """Numbers (n_nodes, 3) of the unknowns in the axisymmetric solid's order, -1: fixed; a and c on the axis share."""
     mesh: SolidMesh = solid.mesh
     free = np.ones((mesh.nodes.shape[0], 3), dtype=bool)
     free[mesh.axis] = True, False, False

@@ -131,8 +131,7 @@ def _slope(up: Array, down: Array) -> Array:
 
 
 def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, Flags]:
-    """Standard deviation of ln figure over an input's spread, from its changes at both ends, and True if both are
-    known.
+    """Standard deviation of ln figure over an input's spread, from changes at both ends, and True if both are known.
 
     Three-point rule at sqrt(kurtosis) standard uncertainties with weights 1/(2 kurtosis), which reproduces the first
     five moments of the deviation: Gauss-Hermite for a normal, Gauss-Legendre for a rectangular distribution.

@@ -160,8 +160,7 @@ def repeated(part: Solid | Body) -> bool:
 def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssembly:
     """Draw the mould of a scene with a cast membrane.
 
-    Raises InputError with file and key if a part of the mould does not fit, and TypeError for a scene with a printed
-    membrane.
+    Raises InputError with file and key if a part of the mould does not fit, and TypeError for a printed membrane.
     """
     if scene.mould_printer is None or scene.mould_material is None:
         raise TypeError("the membrane of this scene is printed, not cast")

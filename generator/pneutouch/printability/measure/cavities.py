@@ -106,8 +106,7 @@ _STEPS = 8
 _HALVINGS = 3
 
 _BIAS = 0.25
-"""Distance from the middle of the nearest full cube to the surface, in cubes: half a cube at a flat wall, less at a
-round one."""
+"""Distance from the middle of the nearest full cube to the surface, in cubes: half a cube at a flat wall, else less."""
 
 _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Slopes of the lines of sight against the axis they mostly follow, in both directions across it: 98 in all."""

@@ -32,8 +32,7 @@ _INPUT_OF = {
     "wall_thickness_mm": ("wall_thickness", 1.0),
     "dead_volume_mL": ("dead_volume", ML),
 }
-"""Name of the input, and factor to its unit, by the key of a fitted parameter; the contact offset is none of a
-sensor."""
+"""Name of the input, and factor to its unit, by the key of a fitted parameter; not for the contact offset."""
 
 _FORCES = (FIGURES.index("stiffness_N_per_mm"), FIGURES.index("force_at_range_end_N"))
 
