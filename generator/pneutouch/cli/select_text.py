@@ -160,10 +160,10 @@ def shapes_table(selection: ShapeSelection) -> tuple[list[str], list[list[str]]]
 
 def shapes_lines(selection: ShapeSelection) -> list[str]:
     """Lines on the figures of the table, the shapes without a design and the resins left out, with the reasons."""
-    first = PREFERRED[selection.target.weights.prefer or "robust"]
     met = f"{counted(len(selection.designs), 'shape')} of {len(selection.designs) + len(selection.missed)}"
-    lines = [f"{met} with a design that meets the target; first: {first}"]
+    lines = [f"{met} with a design that meets the target"]
     if selection.designs:
+        lines[0] += f"; first: {PREFERRED[selection.target.weights.prefer or 'robust']}"
         lines.append(
             f"every figure is the solid's ({selection.solves} presses); each design passes `check`; "
             f"ball reads: sensitivity under a ball of {BALL_MM:g} mm radius less that under the plate"

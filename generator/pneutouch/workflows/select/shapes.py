@@ -332,11 +332,12 @@ class _Search:
     def _meets(self, trial: ShapeTrial) -> bool:
         """True if a trial meets the target; what the nearest misses is kept."""
         misses = _misses(self.target, trial)
-        size = max(misses.values(), default=0.0)
+        size = max((miss for miss, _ in misses.values()), default=0.0)
         if misses and size < self._far.get(trial.shape, np.inf):
             self._far[trial.shape] = size
-            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, miss in misses.items())
-            self.nearest[trial.shape] = f"the nearest, in {trial.resin.name}, misses {listed}"
+            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, (miss, _) in misses.items())
+            meets = " ".join(option for _, option in misses.values())
+            self.nearest[trial.shape] = f"the nearest, in {trial.resin.name}, misses {listed}; it meets {meets}"
         return not misses
 
 
@@ -349,27 +350,34 @@ def _drawn(shape: str, sizes: Mapping[str, float]) -> DomeShape:
     return shape_of(shape, 10.0, 10.0 * _DRAWN_SHARES[-1], own)
 
 
-def _misses(target: Target, trial: ShapeTrial) -> dict[str, float]:
-    """Requirements that a trial misses, each with the share by which it does."""
-    wanted, figures, misses = target.target, trial.figures, {}
-    if wanted.sensitivity_kPa_per_N is not None:
-        gap = abs(figures.sensitivity / wanted.sensitivity_kPa_per_N - 1.0)
-        if gap > wanted.tolerance_percent / 100:
-            misses["sensitivity"] = gap
+def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str]]:
+    """Requirements that a trial misses, each with the share by which it does and the option that it meets."""
+    wanted, figures = target.target, trial.figures
     stiffness = figures.stiffness_at(wanted.stiffness_depth_mm)
     outer = 2.0 * max(trial.sensor.dome.shape.outer_radius, trial.sensor.dome.inner_radius)
-    at_least = {
-        "force range": (figures.force_high, wanted.force_range_N),
-        "least stiffness": (stiffness, wanted.stiffness_least_N_per_mm),
-    }
-    at_most = {
-        "greatest stiffness": (stiffness, wanted.stiffness_most_N_per_mm),
-        "diameter": (outer, wanted.max_diameter_mm),
-        "footprint": (trial.footprint, wanted.max_footprint_mm),
-        "height": (trial.sensor.dome.shape.outer_height, wanted.max_height_mm),
-    }
-    misses |= {name: 1 - has / least for name, (has, least) in at_least.items() if least and not has >= least}
-    return misses | {name: has / most - 1 for name, (has, most) in at_most.items() if most and not has <= most}
+    height = trial.sensor.dome.shape.outer_height
+    at_least = [
+        ("force range", figures.force_high, wanted.force_range_N, "--force-range"),
+        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, "--stiffness-least"),
+    ]
+    at_most = [
+        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, "--stiffness-most"),
+        ("diameter", outer, wanted.max_diameter_mm, "--max-diameter"),
+        ("footprint", trial.footprint, wanted.max_footprint_mm, "--max-footprint"),
+        ("height", height, wanted.max_height_mm, "--max-height"),
+    ]
+    misses = {}
+    if (asked := wanted.sensitivity_kPa_per_N) is not None:
+        gap = abs(figures.sensitivity / asked - 1.0)
+        if gap > wanted.tolerance_percent / 100:
+            misses["sensitivity"] = gap, f"--sensitivity {figures.sensitivity:.3g}"
+    for name, has, least, option in at_least:
+        if least and not has >= least:
+            misses[name] = 1 - has / least, f"{option} {0.995 * has:.3g}"
+    for name, has, most, option in at_most:
+        if most and not has <= most:
+            misses[name] = has / most - 1, f"{option} {1.005 * has:.3g}"
+    return misses
 
 
 def _slope(known: Mapping[float, float]) -> float:
