@@ -123,9 +123,11 @@ def _unlined(context: SensorContext) -> list[Finding]:
     """Findings on the states whose curves give no sensitivity."""
     states = context.prediction.all_states
     lost = [(one, event) for one in states for event in one.warned if event.kind == NO_LINE]
-    fix, source = "take a driving pressure nearer to 0 kPa or a thicker wall", _SOURCES["no line"]
-    found = []
+    lined, source, found = [one.driving_pressure for one in states if one.figures], _SOURCES["no line"], []
     for state, event in lost:
+        near = min(lined, key=lambda pressure: abs(pressure - state.driving_pressure), default=None)
+        other = "another driving pressure" if near is None else f"{near / KPA:.4g} kPa as the driving pressure"
+        fix = f"take {other} or a thicker wall"
         text, at = f"pressed from {state.driving_pressure / KPA:.4g} kPa: {event.message}", (0.0, 0.0, state.apex_outer)
         found.append(Finding("driving", "warning", context.membrane, text, fix, source, at, None))
     return [*found, *_blocked(context)]
