@@ -124,16 +124,14 @@ def test_a_wall_of_equal_stations_and_a_fillet_are_those_of_the_even_hemisphere(
         ([[0, 1.0]], "cap"),
         ([[0.1, 1.0], [1, 1.2]], "cap"),
         ([[0, 1.0], [1, 9.0]], "cap"),
+        ([[0, 4.9], [1, 4.9]], "hemisphere"),
         ([[0, 1.0], [1, 3.0]], "corrugated"),
     ],
 )
 def test_stations_that_make_no_wall_are_refused(stations, shape, library):
+    rise = {"membrane.wall_thickness_mm": 2.0} if shape == "hemisphere" else {"membrane.rise_mm": 3.0}
     with pytest.raises(InputError) as caught:
-        load_scene(
-            "paper-dome",
-            {"membrane.shape": shape, "membrane.rise_mm": 3.0, "membrane.wall_stations": stations},
-            library,
-        )
+        load_scene("paper-dome", {"membrane.shape": shape, **rise, "membrane.wall_stations": stations}, library)
     assert "membrane.wall_stations" in (caught.value.key, *caught.value.fields)
 
 

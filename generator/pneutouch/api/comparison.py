@@ -92,8 +92,7 @@ def compare(
 ) -> Comparison:
     """Set designs (objects, names, files), folders of builds and folders of measured results side by side.
 
-    ``driving_pressures_kPa`` apply to all designs (None: their own); the rest is as for `Design.predict`. Raises
-    InputError.
+    ``driving_pressures_kPa`` apply to all designs (None: their own); else as `Design.predict`. Raises InputError.
     """
     if not things:
         raise InputError("no design to compare", key="designs", remedy="give designs, their names or their paths")

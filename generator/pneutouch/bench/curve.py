@@ -315,8 +315,7 @@ def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> Points
 def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]:
     """Slope of the pressure (MPa/s) over the last third of the first stretch without contact, and its standard error.
 
-    There a reset is over and nothing was pressed yet: after a press the wall still recovers. Too few blocks: infinite
-    error."""
+    There a reset is over and nothing pressed yet: after a press the wall recovers. Too few blocks: infinite error."""
     start, end = indentations.parts[0].clear
     base = baseline(blocks, end - max((end - start) // 3, 1), end)
     return base.slope[1], math.sqrt(slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf

@@ -41,8 +41,7 @@ _DIGITS = 4
 
 
 def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart | str:
-    """Errors of the force read at the lowest driving pressure from ambient on and at the highest; or why they are
-    unknown."""
+    """Errors of the force read at the lowest driving pressure from ambient on and the highest; or why unknown."""
     blown = [state for state in prediction.states if state.driving_pressure >= 0.0]
     states = blown[:1] + blown[1:][-1:]
     why = place_unknown(prediction, sensor, states) if blown else "its table has no states below ambient pressure"

@@ -331,8 +331,7 @@ def _no_profile(process: str | None, material: str | None, resin: Material | Non
 
 
 def _pressures_kPa(material: Material, design: DesignFile) -> list[float] | None:
-    """Driving pressures for a resin: four, from 0 to a share of the limit, two digits each; None if the default ones
-    suit it."""
+    """Driving pressures for a resin: four, from 0 to a share of the limit, two digits; None if the default suits it."""
     membrane, usual_kPa = design.membrane, design.pneumatics.driving_pressures_kPa
     sensor = material_sensor(material)
     size = membrane.inner_radius_mm, membrane.wall_thickness_mm

@@ -271,8 +271,7 @@ def _side_boss(layout: Layout) -> list[Feature]:
 
 
 def _side_bore(layout: Layout, across: float) -> Feature:
-    """Bore from a vertical hole of radius ``across`` to the mouth; ``net`` is the volume that it removes in addition to
-    that hole."""
+    """Bore from a vertical hole of radius ``across`` to the mouth; ``net``: volume removed besides that hole."""
     port = layout.port
     start = math.sqrt(across**2 - port.passage**2)
     low = 0.5 * start - layout.plate_radius

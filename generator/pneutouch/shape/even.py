@@ -83,6 +83,8 @@ class EvenDome(DomeShape):
         """A wall that varies does not overlap itself, and a fillet has a corner and room."""
         if self.wall_stations and not _rising(self.wall_stations):
             return "wall_stations", "give two to five pairs [share, factor], from 0 to 1, with factors from 0.2 to 5"
+        if self.wall_stations and self.thickest >= self.inner_radius:
+            return "wall_stations", f"{self.thickest:.3g} mm of wall; it must be less than the inner radius"
         bends = [piece.radius for piece in self.line if isinstance(piece, Arc) and piece.last < piece.first]
         if self.wall_stations and min(bends, default=math.inf) <= LEAST_BEND * self.thickest:
             tight = f"the inner face bends with a radius of {min(bends):.3g} mm"

@@ -51,7 +51,11 @@ class Membrane(SparseTable):
         None, unit="mm", low=0.1, high=200, help="Height of the cylinder below the end of a thimble."
     )
     cavity_depth_mm: float | None = number(
-        None, unit="mm", low=0.1, high=100, help="Depth of the cavity behind the inner rim (disc, corrugated, profile)."
+        None,
+        unit="mm",
+        low=0.1,
+        high=100,
+        help="Depth of the cavity behind the rim (disc, corrugated, torus, profile).",
     )
     boss_radius_mm: float | None = number(
         None, unit="mm", low=0.1, high=100, help="Radius of the top of a boss on a disc; left out: no boss."
@@ -71,7 +75,7 @@ class Membrane(SparseTable):
         default=None,
         max_length=5,
         json_schema_extra={"unit": "", "low": 0, "high": 5},
-        description="Factors of wall_thickness_mm along the arc, [share, factor] from 0, the pole, to 1, the rim.",
+        description="[share, factor of wall_thickness_mm, 0.2 to 5] along the arc from 0, the pole, to 1, the rim.",
     )
     root_fillet_mm: float | None = number(
         None,

@@ -46,8 +46,7 @@ class CalibrationFit:
     """Result of a fit; coordinates as in `CalibrationParameters`.
 
     Attributes:
-        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, at the ambient pressure of
-            the runs.
+        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, at the runs' ambient.
         problem, solution: Least-squares problem, weighted with the scatter of the runs, and its solution.
         covariance: Uncertainty of the solution.
         half_width: Half-widths of the 95 % intervals, (k,); NaN for a parameter on a bound or without data and prior.

@@ -194,8 +194,7 @@ def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
 
 
 def difference(fit: LawFit, curve: TensionCurve) -> tuple[Array, Array, Array]:
-    """Stretches above `FROM_STRAIN`, relative differences of a law there as running mean, and point by point; (n,)
-    each."""
+    """Stretches above `FROM_STRAIN`, a law's relative differences there, as running mean and by point; (n,) each."""
     far = curve.stretch >= 1.0 + FROM_STRAIN
     stretch, stress = curve.stretch[far], curve.stress[far]
     points = fit.stress(stretch, curve.kind) / stress - 1.0

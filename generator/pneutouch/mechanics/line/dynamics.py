@@ -122,8 +122,7 @@ class SensorDynamics:
 
     @property
     def fast_gas(self) -> float:
-        """Reading with adiabatic gas over the reading with isothermal gas, without inertia and resistance of the
-        line."""
+        """Reading with adiabatic gas over the reading with isothermal gas, without the line's inertia and loss."""
         share = self.gas_share
         return ADIABATIC if np.isinf(share) else (1.0 + share) / (1.0 + share / ADIABATIC)
 

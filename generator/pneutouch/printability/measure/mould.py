@@ -72,8 +72,7 @@ def overlaps(closed: Sequence[Body]) -> dict[tuple[str, str], float]:
 
 
 def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> CavityMatch:
-    """Comparison of the first cavity of the closed mould, its channels plugged, with the membrane; mesh ``tolerance``
-    in mm."""
+    """Comparison of the first cavity of the closed mould, channels plugged, with the membrane; ``tolerance`` in mm."""
     from manifold3d import Manifold, OpType
 
     plugs = [manifold_of(*tool.mesh(tolerance)) for tool in channels(size)]

@@ -110,8 +110,7 @@ class SurfaceMesh:
 
     @cached_property
     def sagittas(self) -> Array:
-        """Height of the arc over each smooth edge's two faces, (e,), mm: the error of the mesh against a curve; 0 at
-        creases.
+        """Height of the arc over each smooth edge's two faces, (e,), mm: the mesh's error at a curve; 0 at creases.
 
         A circle that turns by t over a face of width w has the radius w/t, so the sagitta w t/8.
         """
