@@ -100,6 +100,18 @@ def test_the_uncertainty_is_that_of_the_sensitivity_where_the_curve_is_as_stiff(
     assert relative.min() > 0.5 * min(stated) and relative.max() < 2.0 * max(stated)
 
 
+def test_a_disc_reads_as_surely_as_it_is_predicted():
+    changes = {"membrane.shape": "disc", "membrane.boss_radius_mm": 2.8, "membrane.boss_height_mm": 2.8}
+    disc = evaluate("paper-dome", {**changes, "pneumatics.driving_pressures_kPa": [4.0, 12.0]}, model="solid")
+    states, grid = disc.prediction.states, reader_grid(disc)
+    year, fresh = (reader_tables(disc, grid, aged).grid for aged in (None, 0.0))
+    stated = [entry.known["sensitivity_kPa_per_N"].standard_uncertainty_relative for entry in disc.uncertainty]
+    rows = [np.array(one.force_uncertainty_relative)[:, -1] for one in (year, fresh)]
+    at = np.interp([state.driving_pressure / KPA for state in states], year.driving_pressure_kPa, rows[0])
+    assert at == pytest.approx(stated, rel=0.05) and (rows[1] < rows[0]).all()
+    assert year.force_uncertainty_unknown is None
+
+
 def test_less_ageing_is_less_uncertainty_and_a_year_is_all_that_is_known(evaluation, result):
     grid = reader_grid(evaluation)
     year, half, fresh = (reader_tables(evaluation, grid, aged).grid for aged in (None, 0.5, 0.0))

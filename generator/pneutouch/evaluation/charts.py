@@ -111,8 +111,7 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
-    """The sensor in another resin, with that resin's law and break strain, and without the correction of a
-    calibration."""
+    """The sensor in another resin, with that resin's law and break strain, without a calibration's correction."""
     return sensor.replace(wall=material_sensor(material).wall, correction=ResponseCorrection())
 
 
@@ -198,8 +197,7 @@ def _under_contact(variant: Sensor, plate: SensitivityCurve, states: Sequence[Se
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> SensitivityCurve | None:
-    """One resin's curve computed with ``model`` itself; None if this geometry cannot be solved in the resin, which must
-    not stop the sheet."""
+    """One resin's curve computed with ``model`` itself; None if this geometry cannot be solved in the resin."""
     top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
     pressures = np.linspace(0.0, top, _POINTS[model])
     try:

@@ -66,6 +66,14 @@ def driven_uncertainties(
     prediction: SensorPrediction, sensor: Sensor, scene: ResolvedDesign, materials: Sequence[Material]
 ) -> tuple[UncertaintyRecord, ...]:
     """One record for each state of the solid, or of a local table, at a driving pressure that the atlas covers not."""
+    budget = driven_budget(prediction, sensor, scene, materials)
+    return tuple(_records(budget, [values_of(prediction, state) for state in prediction.states], _BY_SOLID, scene))
+
+
+def driven_budget(
+    prediction: SensorPrediction, sensor: Sensor, scene: ResolvedDesign, resins: Sequence[Material], aged: float = 1.0
+) -> Budget:
+    """Budget of these states, of the known ``resins``, at the age ``aged`` in years."""
     at = [state.driving_pressure for state in prediction.states]
     solve = _tabulated if prediction.model == "local" else _driven
 
@@ -73,8 +81,7 @@ def driven_uncertainties(
         return np.hstack([_found(solve, other, factor * pressure) for pressure in at])
 
     here = _logs(prediction.states, [prediction.limits.limit_point] * len(at), sensor)
-    budget = _budget(sensor, scene, materials, at, here, again, prediction.model)
-    return tuple(_records(budget, [values_of(prediction, state) for state in prediction.states], _BY_SOLID, scene))
+    return _budget(sensor, scene, resins, at, here, again, prediction.model, aged)
 
 
 def _budget(
@@ -85,6 +92,7 @@ def _budget(
     here: Array,
     again: Again,
     model: str = "solid",
+    aged: float = 1.0,
 ) -> Budget:
     """Budget of states of a ``model`` ``at`` n pressures, MPa, with the logarithms ``here`` of their figures, (figures,
     n)."""
@@ -98,6 +106,7 @@ def _budget(
         numerical={SENSITIVITY_KEY: stated_error(model, sensor), _LIMIT_KEY: limit_discretisation(sensor)},
         calibration=scene.calibration,
         anywhere=scene.design.contact.anywhere,
+        aged=aged,
     )
     standard, kurtosis = by_input(batch, of_sensor)
     near, far = STEP * unit_step(batch).max(axis=1), (np.sqrt(kurtosis) * standard.max(axis=1)).max(axis=1)

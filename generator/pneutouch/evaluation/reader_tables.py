@@ -5,6 +5,7 @@ Standard uncertainty of the force that is read at a pressure rise, over the grid
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,8 +15,10 @@ from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.uncertainty import spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
+from pneutouch.mechanics.atlas.coverage import other_shape
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.predict import contact_words
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.results.reader import (
     ForceTable,
     GasTable,
@@ -45,12 +48,21 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid, aged: float) -> 
     indentation, (n, 11); None if it is unknown, see `why_unknown`. ``aged`` is the age that counts, years.
 
     Sources that act on inputs of the model act through the curve of force over pressure rise; errors of the model are
-    those of its sensitivity, the slope of that curve. The gauge's noise is not in it.
+    those of its sensitivity, the slope of that curve. Of another shape the solid's sensitivity stands for the whole
+    curve. The gauge's noise is not in it.
     """
     sensor, scene = evaluation.sensor.even, evaluation.scene
     if why_unknown(evaluation, grid) is not None:
         return None
     from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
+
+    if lined := _lined(evaluation):
+        from pneutouch.evaluation.filled import driven_budget
+
+        resins, prediction = list(evaluation.resins.values()), replace(evaluation.prediction, states=lined)
+        standard = driven_budget(prediction, evaluation.sensor, scene, resins, aged).standard[SENSITIVITY]
+        along = np.interp(grid.driving_pressure, [one.driving_pressure for one in lined], standard)
+        return np.repeat(along[:, None], UNCERTAINTY_COLUMNS, axis=1)
 
     rows = grid.driving_pressure[grid.computed :]
     sensor_spread = spread(
@@ -78,7 +90,15 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
     other = evaluation.sensor.protocol.other_contact
     if other is not None:
         return f"computed for a central plate without friction alone; here {other}"
-    return unknown(evaluation.sensor.even, grid.model)
+    return None if _lined(evaluation) else unknown(evaluation.sensor.even, grid.model)
+
+
+def _lined(evaluation: Evaluation) -> tuple[SensorState, ...]:
+    """States with figures of a shape that the solid or its table answers for; none of a hemisphere."""
+    prediction, dome = evaluation.prediction, evaluation.sensor.dome
+    if prediction.model not in ("solid", "local") or dome.flange or not other_shape(evaluation.sensor):
+        return ()
+    return tuple(one for one in prediction.states if one.figures is not None and one.driving_pressure >= 0.0)
 
 
 def _slopes(batch: SensorBatch) -> Array:

@@ -1,8 +1,7 @@
 """Known errors of each model in sensitivity: the paper's sensor in each resin against its Table S1.
 
 The solid's errors are computed once and shipped: computing them again would double the time of every prediction.
-``python -m benchmarks.paper`` writes the file, and a test recomputes cells of it. The membrane's errors cost nothing
-and are computed here.
+``python -m benchmarks.paper`` writes the file, and a test recomputes cells of it. The membrane's are computed here.
 """
 
 import hashlib

@@ -226,8 +226,7 @@ def finger_radius(scene: ResolvedDesign) -> float:
 
 
 def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
-    """Thickness of the plate: at least the mount's; thicker for blind holes from both sides, a plug's shoulder or a
-    port in the side."""
+    """Thickness of the plate: at least the mount's; thicker for two blind holes, a plug's shoulder or a side port."""
     seat, mount = scene.seat, scene.mount
     depth = (mount.hole_depth or 0.0) if isinstance(mount, BoltCircle) and mount.family == "blind" else 0.0
     needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall("rigid").recommended

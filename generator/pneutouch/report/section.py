@@ -145,8 +145,7 @@ def _gasket(ax: Axes, layout: Layout, lift: float = 0.0) -> None:
 
 
 def draw_loops(ax: Axes, loops: Sequence[Array], role: str, hatches: Mapping[str, str] = _HATCHES) -> None:
-    """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch that bodies of this ``role`` have; gray
-    if that is empty."""
+    """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch of this ``role``; gray without."""
     from matplotlib.patches import PathPatch
 
     shape, hatch = loops_path(loops), hatches.get(role, "xx")

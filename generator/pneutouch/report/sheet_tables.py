@@ -19,8 +19,7 @@ from pneutouch.wording import held_by, unknown_at
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
-    """The six tiles with the key figures on the first page, at the least and the greatest rated driving pressure of
-    those with figures."""
+    """The six tiles with the key figures on the first page, at the least and greatest rated pressure with figures."""
     states = sheet.prediction.states
     rated = [k for k, state in enumerate(states) if state.figures and not _is_above(sheet, state)] or [0]
     first, last = rated[0], rated[-1]

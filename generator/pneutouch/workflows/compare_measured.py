@@ -96,8 +96,7 @@ PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
 class MeasuredColumn:
     """Groups of one resin and age, by driving pressure, and the loading points of their runs of kind steps.
 
-    ``kind`` is "measured", or "design" for the prediction that the results were compared with; ``depths`` as
-    `compare.Depths`."""
+    ``kind`` is "measured", or "design" for the prediction compared; ``depths``: `compare.Depths`."""
 
     name: str
     source: str

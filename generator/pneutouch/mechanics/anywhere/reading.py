@@ -99,8 +99,7 @@ def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
 
 def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, table: PlaceTable | None = None) -> Array:
     """Logarithm (n, m, k) of the force under an object over that under the central plate at the same reading. The
-    readings are those of the plate at travels ``levels`` (n, k) in R0; NaN if the object does not reach the reading by
-    0.75 R0 of travel.
+    readings are those of the plate at travels ``levels`` (n, k) in R0; NaN if not reached by 0.75 R0 of travel.
     A force that is read by the central calibration is exp(-logarithm) times the true one. ``table`` None: shipped."""
     table = table or shipped()
     nodes, known = np.array(table.recipe.levels), table.logs(domes, places)

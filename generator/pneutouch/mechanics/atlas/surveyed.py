@@ -304,8 +304,7 @@ class SurveyedDome:
         return float(free.unit.x[self.solid.mesh.outer, 1].max())
 
     def _pressed(self, free: FreeState, ambient: float, deepest: float) -> tuple[list[PlateState], float]:
-        """States of one press to a depth, or to its first event, with the gas of an ambient pressure; and the depth
-        that it reached."""
+        """States of one press to a depth, or to its first event, with the gas of an ambient pressure; and the depth."""
         plan, solid = self.plan, self.solid
         plate = Plate(self._touched(free), np.inf, solid.contact.longest)
         supply = Gas.filled(free.unit.filling.pressure, free.unit.volume, ambient, plan.dead)

@@ -68,8 +68,7 @@ class SurfaceStatus(PointStatus):
 class SurfaceLinearContact(LinearContact):
     """Contact and friction, linear in a displacement of the coefficients; tractions along the surface (..., 2).
 
-    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None: those at the
-    present positions.
+    foreseen: tractions that act on the curvature of the object, tried first for their status; None: the present ones.
     """
 
     step: SurfaceFriction

@@ -134,8 +134,7 @@ class OffAxisPress:
 
     ``surface`` is the object in R0 at any height; ``press`` is as for the axisymmetric solid, its object is not used.
     ``travel``: sideways displacement of the object after the press, mm; without friction it must be 0 (ValueError).
-    ``symmetric``: True if the scene is also symmetric about the plane across that of the offset, so that harmonics of
-    even order suffice."""
+    ``symmetric``: True if the plane across that of the offset is one of symmetry too: even harmonics suffice."""
 
     def __init__(
         self,

@@ -135,8 +135,7 @@ class TermState:
 
 
 class EnergyTerm(Protocol):
-    """Interface of a part of the total energy beside wall, filling and plate: the base below the wall, its flange, or
-    friction in one step.
+    """Part of the total energy beside wall, filling and plate: the base below the wall, its flange, friction in a step.
 
     ``noise`` is the error that rounding leaves in the gradient, as a force.
     """

@@ -193,8 +193,7 @@ _BESIDE = np.linspace(0.0, 3.0, 301)
 
 
 def travel_to_rim(solid: SolidModel, body: Indenter) -> float:
-    """Travel (R0) of an object from its height at which it meets the flange beside the wall, or a ring on it; inf
-    without a base."""
+    """Travel (R0) of an object from its height at which it meets the flange, or a ring on it; inf without a base."""
     if solid.base is None:
         return np.inf
     beside = solid.rest[solid.mesh.outer[0, 0], 0] + _BESIDE

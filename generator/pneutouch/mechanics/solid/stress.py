@@ -22,8 +22,7 @@ _SEARCH = 41
 class WallExtremes:
     """Extremes over both faces of the wall away from the clamp.
 
-    stretch, von_mises (Cauchy, MPa): the largest values.  fold: largest ratio of the stretch across a face to the least
-    stretch along it.
+    stretch, von_mises (Cauchy, MPa): the largest values.  fold: largest stretch across a face over the least along it.
     """
 
     stretch: float

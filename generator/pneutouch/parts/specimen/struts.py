@@ -160,8 +160,7 @@ def _sound(lattice: Lattice, piece: Mesh) -> bool:
 def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array) -> Mesh:
     """An octant, scaled to ``half`` mm, and its mirror images, ``counts`` along each axis, from ``origin`` (3,).
 
-    A vertex on a plane between octants is one vertex of both, identified by its number and that of the plane: positions
-    are not compared.
+    A vertex on a plane between octants is one of both, known by its number and the plane's, not by its position.
     """
     vertices, triangles = piece.vertices, piece.triangles
     on_low, on_high = vertices == 0.0, vertices == 1.0

@@ -204,8 +204,7 @@ def load_curves(
 
     A single file has the ``kind`` given, else the one it shows, the resin of the design ``scene``, and that driving
     pressure of the design which was read before contact. ``of_the_day``: the ambient pressure of ``scene`` was stated
-    for these files, and precedes the campaign's. Raises InputError if the campaign itself is wrong, or none of
-    its files can be read.
+    for these files, and precedes the campaign's. Raises InputError if the campaign is wrong, or no file can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
         campaign, folder = campaign_of(data)
@@ -321,8 +320,7 @@ def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> C
 
 
 def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: CampaignData) -> MeasuredCurve:
-    """Curve of a single file at the design's driving pressure near the one that was read; if none is near, at the one
-    read, with a question.
+    """Curve of a single file at the design's driving pressure near the one read; if none is, at that, with a question.
 
     Raises InputError for a pressure before contact that looks like an absolute one.
     """

@@ -58,8 +58,7 @@ _FARTHEST = 2.0
 def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[OfflineChange]:
     """Changes of one input each that bring the figure nearer to the value, least change first; none if none does.
 
-    Each is computed from the figure's elasticity at the state nearest to the value; ``predicted`` is the model's figure
-    after the change."""
+    Each is computed from the figure's elasticity at the nearest state; ``predicted``: the figure after the change."""
     values = curves.values(figure)
     if np.isnan(values).all():
         return []

@@ -283,8 +283,7 @@ class _Search:
         return None if best is None else replace(best, slope=_slope(known))
 
     def _bounds(self, radius: float, wall: float | None) -> tuple[float, float, float]:
-        """Least and greatest size, mm, that is solved for, and the one to begin with: of the wall, or of the radius if
-        the wall is given."""
+        """Least and greatest size solved for, mm, and the first one: of the wall, or of the radius if that is given."""
         if wall is not None:
             given = self.target.given.inner_radius_mm
             return (given, given, given) if given is not None else (max(wall / _THICKEST, 1.0), radius, radius)
@@ -389,8 +388,7 @@ def _slope(known: Mapping[float, float]) -> float:
 
 
 def _next(known: Mapping[float, float], low: float, high: float, *, falls: bool) -> float:
-    """Size to try next, by a secant in logarithms within the bracket of what is known; ``falls``: the sensitivity falls
-    with the size."""
+    """Size to try next, by a secant in logarithms within the bracket of what is known; ``falls``: as of a wall."""
     low = max(low, *(size if (gap > 0) == falls else low for size, gap in known.items()))
     high = min(high, *(size if (gap > 0) != falls else high for size, gap in known.items()))
     (a, first), (b, second) = [*known.items()][-2:] if len(known) > 1 else ((1.0, 0.0), *known.items())

@@ -161,8 +161,7 @@ def stored_dataset(path: Path) -> xarray.Dataset:
 
 
 def _loaded(path: Path, damaged: InputError, *, hashed: bool = False) -> xarray.Dataset:
-    """Dataset of a file, its values still there; raises ``damaged`` if it is none, or if it is to be ``hashed`` and has
-    another content."""
+    """Dataset of a file, its values still there; raises ``damaged`` if it is none, or ``hashed`` and another."""
     import xarray
 
     size = check_plain(path, "dataset")
@@ -280,8 +279,7 @@ def _cell(value: Any) -> Any:
 
 
 def check_companions(out: Path, plan: SweepPlan) -> None:
-    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace another file, or one
-    that was changed."""
+    """Raise InputError if ``out`` cannot be a dataset, or if its table or a picture would replace another file."""
     check_output(out)
     names = [f"over-{key.replace('.', '_')}" for key in plan.varied] + ["over-point", f"over-{PRESSURE}", "map"]
     pictures = (path for name in names for path in _picture_files(out, name))

@@ -255,8 +255,7 @@ class WorkFolder:
         self.journal.unlink(missing_ok=True)
 
     def finish(self, write: Callable[[Path], None] | None) -> None:
-        """Let ``write`` write the dataset, put it in its place, whole, and delete the progress; None leaves the dataset
-        that is there."""
+        """Let ``write`` write the dataset, put it in its place, and delete the progress; None leaves the dataset."""
         with uninterrupted():
             self._put(write)
 
