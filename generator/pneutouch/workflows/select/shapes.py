@@ -352,30 +352,24 @@ def _drawn(shape: str, sizes: Mapping[str, float]) -> DomeShape:
 def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str]]:
     """Requirements that a trial misses, each with the share by which it does and the option that it meets."""
     wanted, figures = target.target, trial.figures
-    stiffness = figures.stiffness_at(wanted.stiffness_depth_mm)
-    outer = 2.0 * max(trial.sensor.dome.shape.outer_radius, trial.sensor.dome.inner_radius)
-    height = trial.sensor.dome.shape.outer_height
-    at_least = [
-        ("force range", figures.force_high, wanted.force_range_N, "--force-range"),
-        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, "--stiffness-least"),
-    ]
-    at_most = [
-        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, "--stiffness-most"),
-        ("diameter", outer, wanted.max_diameter_mm, "--max-diameter"),
-        ("footprint", trial.footprint, wanted.max_footprint_mm, "--max-footprint"),
-        ("height", height, wanted.max_height_mm, "--max-height"),
+    stiffness, shape = figures.stiffness_at(wanted.stiffness_depth_mm), trial.sensor.dome.shape
+    outer = 2.0 * max(shape.outer_radius, trial.sensor.dome.inner_radius)
+    bounds = [
+        ("force range", figures.force_high, wanted.force_range_N, True, "--force-range"),
+        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, True, "--stiffness-least"),
+        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, False, "--stiffness-most"),
+        ("diameter", outer, wanted.max_diameter_mm, False, "--max-diameter"),
+        ("footprint", trial.footprint, wanted.max_footprint_mm, False, "--max-footprint"),
+        ("height", shape.outer_height, wanted.max_height_mm, False, "--max-height"),
     ]
     misses = {}
-    if (asked := wanted.sensitivity_kPa_per_N) is not None:
-        gap = abs(figures.sensitivity / asked - 1.0)
+    if (wanted_kPa_per_N := wanted.sensitivity_kPa_per_N) is not None:
+        gap = abs(figures.sensitivity / wanted_kPa_per_N - 1.0)
         if gap > wanted.tolerance_percent / 100:
             misses["sensitivity"] = gap, f"--sensitivity {figures.sensitivity:.3g}"
-    for name, has, least, option in at_least:
-        if least and not has >= least:
-            misses[name] = 1 - has / least, f"{option} {0.995 * has:.3g}"
-    for name, has, most, option in at_most:
-        if most and not has <= most:
-            misses[name] = has / most - 1, f"{option} {1.005 * has:.3g}"
+    for name, has, bound, least, option in bounds:
+        if bound and not (has >= bound if least else has <= bound):
+            misses[name] = abs(has / bound - 1.0), f"{option} {(0.995 if least else 1.005) * has:.3g}"
     return misses
 
 
