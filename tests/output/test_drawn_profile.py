@@ -80,6 +80,16 @@ def test_other_drawings_are_refused_by_their_file(tmp_path, lines, more, words):
     assert words in str(caught.value) and caught.value.file == str(path)
 
 
+def test_a_curve_beside_the_polyline_is_refused(tmp_path):
+    path = drawing(tmp_path, ROUND)
+    both = ezdxf.readfile(path)
+    both.modelspace().add_circle((0.0, 0.0), 3.0)
+    both.saveas(path)
+    with pytest.raises(InputError) as caught:
+        drawn_profile(path)
+    assert "1 other" in str(caught.value)
+
+
 def test_a_file_that_is_no_drawing_is_refused(tmp_path):
     path = tmp_path / "x.dxf"
     path.write_text("no drawing")

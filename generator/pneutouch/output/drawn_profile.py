@@ -11,11 +11,13 @@ from pneutouch.errors import InputError
 from pneutouch.shape.even import arc_to
 from pneutouch.shape.meridian import Arc
 from pneutouch.shape.profile import Profile
+from pneutouch.wording import counted
 
 _MM = (0, 4)
 """Values of $INSUNITS for drawings without a unit, taken as mm, and in mm."""
 
 _UNITS = {1: "inches", 2: "feet", 5: "cm", 6: "m", 13: "µm"}
+_CURVES = ("LWPOLYLINE", "POLYLINE", "LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 _DIGITS = 6
 _OFF = 1e-3
 """Greatest distance in mm of a point of the polyline from the rounded profile."""
@@ -73,15 +75,17 @@ def _polyline(path: Path) -> list[tuple[float, float, float]]:
     try:
         drawing = ezdxf.readfile(path)  # type: ignore[attr-defined]
     except (OSError, ezdxf.DXFError) as error:  # type: ignore[attr-defined]
-        raise InputError(f"not a drawing in DXF that can be read: {error}", file=path) from None
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"not a drawing in DXF that can be read: {why}", file=path) from None
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _MM:
         raise InputError(f"drawn in {_UNITS.get(unit, f'unit {unit}')}", file=path, remedy="save it in mm")
-    lines: list[Any] = list(drawing.modelspace().query("LWPOLYLINE"))
-    found = [one for one in lines if not one.closed]
-    if len(found) != 1:
+    drawn: list[Any] = [one for one in drawing.modelspace() if one.dxftype() in _CURVES]
+    found = [one for one in drawn if one.dxftype() == "LWPOLYLINE" and not one.closed]
+    if len(found) != 1 or len(drawn) > 1:
         raise InputError(
-            f"{len(found)} open polylines; one is needed, from the rim to the axis",
+            f"{counted(len(found), 'open polyline')} and {counted(len(drawn) - len(found), 'other curve')}; one polyline "
+            "alone is needed, from the rim to the axis",
             file=path,
             remedy="join the pieces of the inner face into one polyline, and leave all else out",
         )
