@@ -84,8 +84,8 @@ def _polyline(path: Path) -> list[tuple[float, float, float]]:
     found = [one for one in drawn if one.dxftype() == "LWPOLYLINE" and not one.closed]
     if len(found) != 1 or len(drawn) > 1:
         raise InputError(
-            f"{counted(len(found), 'open polyline')} and {counted(len(drawn) - len(found), 'other curve')}; one polyline "
-            "alone is needed, from the rim to the axis",
+            f"{counted(len(found), 'open polyline')} and {counted(len(drawn) - len(found), 'other curve')}; "
+            "one polyline alone is needed, from the rim to the axis",
             file=path,
             remedy="join the pieces of the inner face into one polyline, and leave all else out",
         )
