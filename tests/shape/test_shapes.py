@@ -256,3 +256,23 @@ def test_the_limits_of_a_flat_wall_do_not_depend_on_the_cavity_behind_it(cavity,
     limits = evaluate("paper-dome", changes, library=library).prediction.limits
     deep = evaluate("paper-dome", {**changes, "membrane.cavity_depth_mm": 3.0}, library=library).prediction.limits
     assert limits.limit_point == pytest.approx(deep.limit_point, rel=1e-4)
+
+
+@pytest.mark.parametrize("steps", [14, 28, 60])
+def test_a_plate_on_the_flange_leaves_the_curve_before_it_alone(steps, library):
+    changes = {
+        "membrane.shape": "disc",
+        "membrane.inner_radius_mm": 9.37,
+        "membrane.boss_radius_mm": 3.27,
+        "membrane.boss_height_mm": 1.87,
+        "pneumatics.driving_pressures_kPa": [0.0],
+        "indentation.steps": steps,
+    }
+    found = []
+    for wall in (2.7, 2.82, 2.83, 3.0):
+        (state,) = evaluate(
+            "paper-dome", {**changes, "membrane.wall_thickness_mm": wall}, library=library
+        ).prediction.states
+        assert state.range_end == pytest.approx(1.87, abs=1e-5) and state.indentation[-1] <= 1.87 + 1e-5
+        found.append(wall * state.figures.sensitivity)
+    assert np.ptp(found) < 0.05 * np.mean(found)

@@ -154,9 +154,11 @@ def indent(
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
     jump: PathJump | None = None
+    # No step passes the flange, but by what its event takes: a curve between both sides of it would be neither's.
+    lowest = plate.height - max(recorder.to_rim, 0.0) / length - 1.0e-9
     for k in range(1, press.steps + 1):
         begun = len(follower.path)
-        jump = descend(follower, plate.height - press.depth / length * k / press.steps)
+        jump = descend(follower, max(plate.height - press.depth / length * k / press.steps, lowest))
         for plate_state in follower.path[begun:]:
             if not _ended(events, solid):
                 states.append(recorder.state(plate_state))
@@ -225,7 +227,7 @@ class _Recorder:
         # A first contact within an edge length of the axis counts as contact on the axis.
         self._annular = touch.radius > solid.contact.longest
         self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
-        self._to_rim = travel_to_rim(solid, self._plate) * solid.length
+        self.to_rim = travel_to_rim(solid, self._plate) * solid.length
 
     def indentation(self, height: float) -> float:
         """Plate travel (mm) since first contact at a nondimensional height."""
@@ -277,7 +279,7 @@ class _Recorder:
             "floor": -self._solid.mesh.floor,
             "overhang": OVERHANG * wall,
             "base": BASE_SHARE,
-            "rim": self._to_rim,
+            "rim": self.to_rim,
         }
         before, after = _watched(a, self._edge), _watched(b, self._edge)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
