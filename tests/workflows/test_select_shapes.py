@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from pneutouch.catalogue import DesignSource, load_scene
@@ -109,3 +110,19 @@ def test_every_shape_has_radii_to_try_below_a_limit(shape, library):
     for sizes in VARIANTS[shape]:
         radii = search_for._radii(shape, sizes)
         assert len(radii) == 2 and all(1.0 < radius <= 12.0 for radius in radii)
+
+
+def test_a_ball_is_compared_with_the_plate_at_the_same_force(library):
+    found = select_shapes(target(["thimble"], max_diameter_mm=25.0, driving_pressure_kPa=0.0), "here", library)
+    ((ratio,), (design,)) = [one.ball_reading_ratio for one in found.record.designs], found.designs
+    fine = {"pneumatics.driving_pressures_kPa": [0.0], "indentation.steps": 60}
+    source = source_of(found.base, design.assignments)
+    ball, plate = (
+        evaluate(
+            DesignSource(source.name, source.content, "here"), {**fine, **more}, library=library
+        ).prediction.states[0]
+        for more in ({"contact.object": "ball", "contact.ball_radius_mm": 5.0}, {})
+    )
+    force = 0.98 * min(ball.figures.force_high, plate.figures.force_high)
+    read = [np.interp(force, state.force, state.pressure_rise) for state in (ball, plate)]
+    assert ratio == pytest.approx(read[0] / read[1], rel=0.05) and ratio > 0.7

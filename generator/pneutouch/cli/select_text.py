@@ -149,7 +149,7 @@ def shapes_table(selection: ShapeSelection) -> tuple[list[str], list[list[str]]]
     """The best design of each shape that has one: columns and rows."""
     rows = []
     for number, one in enumerate(selection.record.designs, start=1):
-        ball = "no line" if one.ball_sensitivity_ratio is None else f"{100 * (one.ball_sensitivity_ratio - 1):+.0f} %"
+        ball = "no line" if one.ball_reading_ratio is None else f"{100 * (one.ball_reading_ratio - 1):+.0f} %"
         sizes = ", ".join(f"{key.removesuffix('_mm').replace('_', ' ')} {size:g}" for key, size in one.sizes.items())
         row = [str(number), one.shape, one.material, f"{one.inner_radius_mm:.2f}", f"{one.wall_thickness_mm:.2f}"]
         row += [sizes or "-", f"{one.height_mm:.1f}", f"{one.footprint_mm:.1f}", f"{one.driving_pressure_kPa:g}"]
@@ -166,7 +166,7 @@ def shapes_lines(selection: ShapeSelection) -> list[str]:
         lines[0] += f"; first: {PREFERRED[selection.target.weights.prefer or 'robust']}"
         lines.append(
             f"every figure is the solid's ({selection.solves} presses); each design passes `check`; "
-            f"ball reads: sensitivity under a ball of {BALL_MM:g} mm radius less that under the plate"
+            f"ball reads: pressure under a ball of {BALL_MM:g} mm radius over the plate's at the same force, less 1"
         )
     return [*lines, *(f"{name}: {why}" for name, why in selection.missed.items()), *grouped(selection.left_out)]
 

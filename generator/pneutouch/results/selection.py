@@ -241,8 +241,8 @@ class ShapeRecord:
     """Contact force at the end of the range."""
     travel_mm: float
     """Travel of the plate from first contact to the end of the range."""
-    ball_sensitivity_ratio: float | None
-    """Sensitivity under a ball of 5 mm radius over that under the plate; null: no straight line explains it."""
+    ball_reading_ratio: float | None
+    """Pressure rise under a ball of 5 mm radius over the plate's, at the greatest force that both reach; null: none."""
 
 
 @dataclass(frozen=True, slots=True)

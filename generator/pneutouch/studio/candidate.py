@@ -86,7 +86,7 @@ def grade_figures(selection: GradedSelectionRun) -> CandidateFigures:
 
 def shape_figures(found: ShapeRecord, rank: int) -> CandidateFigures:
     """Figures of the best design of a shape, of a rank from 1; it has no place on a chart."""
-    ball = found.ball_sensitivity_ratio
+    ball = found.ball_reading_ratio
     sizes = [
         (key.removesuffix("_mm").replace("_", " ").capitalize(), f"{size:g} mm", "")
         for key, size in found.sizes.items()

@@ -43,23 +43,17 @@ VARIANTS: dict[SearchedShape, tuple[dict[str, float], ...]] = {
 
 BALL_MM = 5.0
 """Radius of the small ball whose reading is set beside the plate's."""
-
 _RADII = (1.0, 0.75)
 """Inner radii tried, over the greatest that the limits of the target leave: our choice."""
-
 _WALL_SHARE, _DRAWN_SHARES, _THICKEST = 0.16, (0.2, 0.15, 0.1, 0.05), 0.4
 """Walls over the inner radius: at which a search begins, for which the outer sizes are drawn, and the greatest."""
-
 _SOLVES = 7
 _MET = 0.3
 """Most solves for one wall; share of the tolerance within which a wall is taken: our choice."""
-
 _JUDGED = 3
 """Designs of a shape that are checked, best first, until one passes."""
-
 _SHORTEST = 0.1
 """Least range of a design over the depth of its test: our choice; where a plate soon lies on the flange it is less."""
-
 _STEP = 0.01
 """Radii and walls are multiples of this, mm."""
 
@@ -86,8 +80,7 @@ class ShapeTrial:
 
 @dataclass(frozen=True)
 class ShapeDesign:
-    """The best design of a shape, its rated pressure (MPa), and its sensitivity under the small ball over the plate's;
-    None where no straight line explains it."""
+    """The best design of a shape, its rated pressure (MPa), and its reading under the small ball over the plate's."""
 
     trial: ShapeTrial
     rated: float
@@ -117,7 +110,7 @@ class ShapeDesign:
             stiffness_N_per_mm=figures.stiffness,
             force_range_end_N=figures.force_high,
             travel_mm=trial.state.range_end,
-            ball_sensitivity_ratio=self.ball,
+            ball_reading_ratio=self.ball,
         )
 
 
@@ -206,12 +199,18 @@ class _Search:
         }[prefer]
 
     def ball(self, trial: ShapeTrial) -> float | None:
-        """Sensitivity under a ball of `BALL_MM` over that under the plate; None where no straight line explains it."""
+        """Reading under a ball of `BALL_MM` over that under the plate, at one force; None without a line."""
         if id(trial) not in self._balls:
-            changes = {**trial.changes, "contact.object": "ball", "contact.ball_radius_mm": BALL_MM}
-            pressed = self._pressed(changes, trial.state.driving_pressure)
-            figures = None if pressed is None else pressed[1].figures
-            self._balls[id(trial)] = None if figures is None else figures.sensitivity / trial.figures.sensitivity
+            plate, pressure = dict(trial.changes), trial.state.driving_pressure
+            ball = {**plate, "contact.object": "ball", "contact.ball_radius_mm": BALL_MM}
+            found = self._pressed(ball, pressure)
+            # Most balls end their range early: both are pressed that deep, in steps that resolve it.
+            end = {} if found is None else {"indentation.depth_mm": round(0.999 * found[1].range_end, 4)}
+            pressed = [self._pressed({**one, **end}, pressure) for one in (ball, plate) if found]
+            states = [each[1] for each in pressed if each is not None]
+            force = min((float(state.force[-1]) for state in states), default=0.0)
+            read = [float(np.interp(force, state.force, state.pressure_rise)) for state in states]
+            self._balls[id(trial)] = read[0] / read[1] if len(read) == 2 and read[1] > 0.0 else None
         return self._balls[id(trial)]
 
     def passing(self, trials: list[ShapeTrial]) -> tuple[ShapeDesign | None, str | None]:
@@ -238,8 +237,7 @@ class _Search:
         return sorted({0.0, listed_kPa[len(listed_kPa) // 2] * KPA})
 
     def _radii(self, shape: str, sizes: Mapping[str, float]) -> list[float]:
-        """Inner radii to try, mm: shares of the greatest that diameter, footprint and height leave, else of the
-        base's."""
+        """Inner radii to try, mm: shares of the greatest that the target leaves, else of the base's."""
         figures, given = self.target.target, self.target.given
         if given.inner_radius_mm is not None:
             return [given.inner_radius_mm]
