@@ -1,5 +1,6 @@
 """The answer to a target as text for people."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -168,7 +169,16 @@ def shapes_lines(selection: ShapeSelection) -> list[str]:
             f"every figure is the solid's ({selection.solves} presses); each design passes `check`; "
             f"ball reads: pressure under a ball of {BALL_MM:g} mm radius over the plate's at the same force, less 1"
         )
-    return [*lines, *(f"{name}: {why}" for name, why in selection.missed.items()), *grouped(selection.left_out)]
+    return [
+        *lines,
+        *(f"{name}: {_in_options(why)}" for name, why in selection.missed.items()),
+        *grouped(selection.left_out),
+    ]
+
+
+def _in_options(text: str) -> str:
+    """The text with each name in backquotes before a number as the option that it is."""
+    return re.sub(r"`(\w+)` (?=\d)", lambda found: f"--{found[1].replace('_', '-')} ", text)
 
 
 PREFERRED = {

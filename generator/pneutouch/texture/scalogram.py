@@ -167,8 +167,7 @@ class Scalogram:
 
 
 class Ridge(NamedTuple):
-    """Frequency in Hz and amplitude of a highest point, (...); ``inner`` is False if the range has no maximum
-    inside."""
+    """Frequency in Hz and amplitude of a highest point, (...); ``inner`` is False without a maximum inside."""
 
     frequency: Array
     amplitude: Array

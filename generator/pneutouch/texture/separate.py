@@ -90,8 +90,7 @@ def recommend(
 ) -> PressureAdvice:
     """Driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
-    The sensor must lie in the atlas. Raises InputError if it never reaches the preload (N), or for an impossible
-    pattern."""
+    The sensor must lie in the atlas. Raises InputError for a preload (N) or pattern out of reach."""
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)
     levels = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]

@@ -118,8 +118,7 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
 
 
 def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
-    """Many sensors at a preload (N), by the atlas, which must cover the batch; pressures must be below the limit
-    points."""
+    """Many sensors at a preload (N), by the atlas, which must cover the batch; pressures below the limit points."""
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     press = AtlasPress(batch, shipped().slices(walls, ("contact_radius",)), k)
     depth = batch.depth / batch.inner_radius

@@ -110,8 +110,7 @@ class SelectionRun:
         return values + assignments(self.changes)
 
     def footprint(self, choice: Candidate) -> float:
-        """Diameter of the whole sensor, mm: membrane, flange and connector, without a port that stands out at its
-        side."""
+        """Diameter of the whole sensor, mm: membrane, flange and connector, without a port at its side."""
         assert self.problem.connector is not None
         return float(self.problem.connector(choice.pool.radius, choice.pool.wall).diameter[0])
 
@@ -183,8 +182,7 @@ def found(
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
-    """The run with its answer, by the atlas, or by the solid if only that covers the base's contact or a resin's
-    law."""
+    """The run with its answer, by the atlas, or the solid if only that covers contact or law."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))

@@ -353,21 +353,21 @@ def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str]]:
     stiffness, shape = figures.stiffness_at(wanted.stiffness_depth_mm), trial.sensor.dome.shape
     outer = 2.0 * max(shape.outer_radius, trial.sensor.dome.inner_radius)
     bounds = [
-        ("force range", figures.force_high, wanted.force_range_N, True, "--force-range"),
-        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, True, "--stiffness-least"),
-        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, False, "--stiffness-most"),
-        ("diameter", outer, wanted.max_diameter_mm, False, "--max-diameter"),
-        ("footprint", trial.footprint, wanted.max_footprint_mm, False, "--max-footprint"),
-        ("height", shape.outer_height, wanted.max_height_mm, False, "--max-height"),
+        ("force range", figures.force_high, wanted.force_range_N, True, "force_range"),
+        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, True, "stiffness_least"),
+        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, False, "stiffness_most"),
+        ("diameter", outer, wanted.max_diameter_mm, False, "max_diameter"),
+        ("footprint", trial.footprint, wanted.max_footprint_mm, False, "max_footprint"),
+        ("height", shape.outer_height, wanted.max_height_mm, False, "max_height"),
     ]
     misses = {}
     if (wanted_kPa_per_N := wanted.sensitivity_kPa_per_N) is not None:
         gap = abs(figures.sensitivity / wanted_kPa_per_N - 1.0)
         if gap > wanted.tolerance_percent / 100:
-            misses["sensitivity"] = gap, f"--sensitivity {figures.sensitivity:.3g}"
+            misses["sensitivity"] = gap, f"`sensitivity` {figures.sensitivity:.3g}"
     for name, has, bound, least, option in bounds:
         if bound and not (has >= bound if least else has <= bound):
-            misses[name] = abs(has / bound - 1.0), f"{option} {(0.995 if least else 1.005) * has:.3g}"
+            misses[name] = abs(has / bound - 1.0), f"`{option}` {(0.995 if least else 1.005) * has:.3g}"
     return misses
 
 

@@ -201,8 +201,7 @@ _WRITTEN = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
 class WorkFolder:
     """Folder ``OUT.parts/``, locked from entering to leaving the context.
 
-    The lock is the kernel's and ends with its process, however that ends; the process number in the file is for
-    messages."""
+    The lock is the kernel's and ends with its process, however that ends; the number in the file is for messages."""
 
     def __init__(self, out: Path) -> None:
         """Raises InputError if ``out`` cannot be the file of a dataset."""
