@@ -47,7 +47,7 @@ def target_row(title: str, flags: str) -> dict[str, Any]:
     }
     found, seconds = timed(lambda: select_shapes(validate(Target, tables, title), title, LIBRARY))
     designs = [plain(one) for one in found.record.designs]
-    return {"title": title, "flags": flags, "cpu_s": seconds, "designs": designs, "missed": dict(found.missed)}
+    return {"title": title, "flags": flags, "cpu_s": seconds, "designs": designs, "missed": list(found.missed)}
 
 
 def parsed(words: dict[str, str]) -> dict[str, tuple[str, str, Any]]:

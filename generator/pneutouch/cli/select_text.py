@@ -1,6 +1,5 @@
 """The answer to a target as text for people."""
 
-import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -39,7 +38,7 @@ def answer_text(answer: TargetAnswer, typed: Typed) -> str:
     if isinstance(answer.run, ProcessSelection):
         return processes_text(answer.run, typed)
     if isinstance(answer.run, ShapeSelection):
-        return shapes_text(answer.run)
+        return shapes_text(answer.run, typed)
     if isinstance(answer.run, GradedSelectionRun):
         return graded_text(answer.run)
     return selection_text(answer.run, relief_lines(answer.run, answer.relief, typed))
@@ -140,10 +139,10 @@ SHAPE_HEAD += ["N/mm", "range N", "travel mm", "ball reads", "rated kPa"]
 """Columns of the table of shapes."""
 
 
-def shapes_text(selection: ShapeSelection) -> str:
+def shapes_text(selection: ShapeSelection, typed: Typed = in_file) -> str:
     """A row for the best design of each shape, and why others have none."""
     head, rows = shapes_table(selection)
-    return "\n".join([*([table_text(head, rows), ""] if rows else []), *shapes_lines(selection)])
+    return "\n".join([*([table_text(head, rows), ""] if rows else []), *shapes_lines(selection, typed)])
 
 
 def shapes_table(selection: ShapeSelection) -> tuple[list[str], list[list[str]]]:
@@ -159,7 +158,7 @@ def shapes_table(selection: ShapeSelection) -> tuple[list[str], list[list[str]]]
     return SHAPE_HEAD, rows
 
 
-def shapes_lines(selection: ShapeSelection) -> list[str]:
+def shapes_lines(selection: ShapeSelection, typed: Typed = in_file) -> list[str]:
     """Lines on the figures of the table, the shapes without a design and the resins left out, with the reasons."""
     met = f"{counted(len(selection.designs), 'shape')} of {len(selection.designs) + len(selection.missed)}"
     lines = [f"{met} with a design that meets the target"]
@@ -169,16 +168,7 @@ def shapes_lines(selection: ShapeSelection) -> list[str]:
             f"every figure is the solid's ({selection.solves} presses); each design passes `check`; "
             f"ball reads: pressure under a ball of {BALL_MM:g} mm radius over the plate's at the same force, less 1"
         )
-    return [
-        *lines,
-        *(f"{name}: {_in_options(why)}" for name, why in selection.missed.items()),
-        *grouped(selection.left_out),
-    ]
-
-
-def _in_options(text: str) -> str:
-    """The text with each name in backquotes before a number as the option that it is."""
-    return re.sub(r"`(\w+)` (?=\d)", lambda found: f"--{found[1].replace('_', '-')} ", text)
+    return [*lines, *(f"{name}: {why}" for name, why in selection.reasons(typed).items()), *grouped(selection.left_out)]
 
 
 PREFERRED = {

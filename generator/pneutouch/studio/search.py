@@ -137,7 +137,7 @@ def _by_shape(selection: ShapeSelection, document: Mapping[str, Any], page: Cand
         )
         for rank, (one, record) in enumerate(found, start=1)
     ]
-    (line, *remarks), (head, rows) = shapes_lines(selection), shapes_table(selection)
+    (line, *remarks), (head, rows) = shapes_lines(selection, typed), shapes_table(selection)
     table = PageTable("The best design of each shape", head, rows) if rows else None
     return PageSelection(document, line, [], cards, remarks, None, table)
 

@@ -7,6 +7,7 @@ is solved for. What is found passes the whole ``check``.
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import ANY, base_scene, setting_changes
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, judge, source_of
+from pneutouch.workflows.select.document import Typed, in_file
 from pneutouch.workflows.select.select import PLATE_SHARE, resins_of
 
 VARIANTS: dict[SearchedShape, tuple[dict[str, float], ...]] = {
@@ -47,8 +49,7 @@ _RADII = (1.0, 0.75)
 """Inner radii tried, over the greatest that the limits of the target leave: our choice."""
 _WALL_SHARE, _DRAWN_SHARES, _THICKEST = 0.16, (0.2, 0.15, 0.1, 0.05), 0.4
 """Walls over the inner radius: at which a search begins, for which the outer sizes are drawn, and the greatest."""
-_SOLVES = 7
-_MET = 0.3
+_SOLVES, _MET = 7, 0.3
 """Most solves for one wall; share of the tolerance within which a wall is taken: our choice."""
 _JUDGED = 3
 """Designs of a shape that are checked, best first, until one passes."""
@@ -56,6 +57,8 @@ _SHORTEST = 0.1
 """Least range of a design over the depth of its test: our choice; where a plate soon lies on the flange it is less."""
 _STEP = 0.01
 """Radii and walls are multiples of this, mm."""
+Missed = tuple[str, Mapping[str, float]]
+"""Why a shape has no design, and what its nearest design meets by the fields of a target."""
 
 
 @dataclass(frozen=True)
@@ -94,15 +97,14 @@ class ShapeDesign:
     @property
     def record(self) -> ShapeRecord:
         """The design as ``select`` prints it."""
-        trial, figures = self.trial, self.trial.figures
-        dome = trial.sensor.dome
+        trial, figures, dome = self.trial, self.trial.figures, self.trial.sensor.dome
         return ShapeRecord(
             shape=dome.shape.key,
             material=trial.resin.name,
             inner_radius_mm=dome.inner_radius,
             wall_thickness_mm=dome.wall_thickness,
             sizes=stated_sizes(dome.shape),
-            height_mm=trial.sensor.dome.shape.outer_height,
+            height_mm=dome.shape.outer_height,
             footprint_mm=trial.footprint,
             driving_pressure_kPa=trial.state.driving_pressure / KPA,
             rated_pressure_kPa=self.rated / KPA,
@@ -121,7 +123,7 @@ class ShapeSelection:
     target: Target
     base: ResolvedDesign
     designs: tuple[ShapeDesign, ...]
-    missed: Mapping[str, str]
+    missed: Mapping[str, Missed]
     left_out: Mapping[str, str]
     solves: int
 
@@ -129,7 +131,12 @@ class ShapeSelection:
     def record(self) -> ShapesRecord:
         """The selection as ``select`` prints it."""
         rows = tuple(one.record for one in self.designs)
-        return ShapesRecord(bool(rows), rows, dict(self.missed), dict(self.left_out), self.solves)
+        return ShapesRecord(bool(rows), rows, self.reasons(), dict(self.left_out), self.solves)
+
+    def reasons(self, typed: Typed = in_file) -> dict[str, str]:
+        """Why shapes have no design; ``typed`` writes a field of the target with what the nearest design meets."""
+        offers = {name: " ".join(typed(*one) for one in met.items()) for name, (_, met) in self.missed.items()}
+        return {name: why + (f"; it meets {offers[name]}" if met else "") for name, (why, met) in self.missed.items()}
 
 
 def select_shapes(
@@ -141,20 +148,19 @@ def select_shapes(
 ) -> ShapeSelection:
     """Search the shapes of ``setting.shapes``. Raises InputError for an unknown name."""
     library = CachedLibrary((library or Library.default()).folders)
-    named = list(dict.fromkeys(target.setting.shapes or ()))
-    shapes = [shape for shape in VARIANTS if ANY in named or shape in named]
+    shapes = [shape for shape in VARIANTS if {ANY, shape} & set(target.setting.shapes or ())]
     scene = base_scene(target, where, library)
     resins, left_out = resins_of(target, where, scene, base_sensor(scene), library)
     search = _Search(target, scene, library)
     designs: list[ShapeDesign] = []
-    missed: dict[str, str] = {}
+    missed: dict[str, Missed] = {}
     for number, shape in enumerate(shapes):
         progress(2 * number, 2 * len(shapes), shape)
         met = sorted(search.trials(shape, resins), key=search.order)
         progress(2 * number + 1, 2 * len(shapes), f"{shape}, print rules")
         found, why = search.passing(met)
         if found is None:
-            missed[shape] = why or search.nearest.get(shape, search.refused)
+            missed[shape] = (why, {}) if why else search.nearest.get(shape, (0.0, (search.refused, {})))[1]
         else:
             designs.append(found)
     designs.sort(key=lambda one: search.order(one.trial))
@@ -163,27 +169,23 @@ def select_shapes(
 
 @dataclass
 class _Search:
-    """Trials for a target on a base. ``nearest`` has, by shape, what the nearest design misses, in words; ``refused``
-    why the last one that could not be pressed has none."""
+    """Trials for a target on a base. ``nearest``: least miss of each shape; ``refused``: why the last has no press."""
 
     target: Target
     base: ResolvedDesign
     library: Library
     solves: int = 0
-    nearest: dict[str, str] = field(default_factory=dict)
+    nearest: dict[str, tuple[float, Missed]] = field(default_factory=dict)
     refused: str = "none of its designs has a range that a straight line explains"
-    _far: dict[str, float] = field(default_factory=dict)
-    _balls: dict[int, float | None] = field(default_factory=dict)
+    _balls: dict[int, tuple[ShapeTrial, float | None]] = field(default_factory=dict)
 
     def trials(self, shape: SearchedShape, resins: tuple[CandidateResin, ...]) -> Iterator[ShapeTrial]:
         """Designs of a shape that meet the target."""
         for sizes in VARIANTS[shape]:
-            for radius in self._radii(shape, sizes):
-                for resin in resins:
-                    for pressure in self._pressures():
-                        trial = self._solved(shape, sizes, resin, radius, pressure)
-                        if trial is not None and self._meets(trial):
-                            yield trial
+            for radius, resin, pressure in product(self._radii(shape, sizes), resins, self._pressures()):
+                trial = self._solved(shape, sizes, resin, radius, pressure)
+                if trial is not None and self._meets(trial):
+                    yield trial
 
     def order(self, trial: ShapeTrial) -> float:
         """Key by which designs are sorted, least first; the print error of the wall is the same for all."""
@@ -210,15 +212,15 @@ class _Search:
             states = [each[1] for each in pressed if each is not None]
             force = min((float(state.force[-1]) for state in states), default=0.0)
             read = [float(np.interp(force, state.force, state.pressure_rise)) for state in states]
-            self._balls[id(trial)] = read[0] / read[1] if len(read) == 2 and read[1] > 0.0 else None
-        return self._balls[id(trial)]
+            # The trial is kept with it, so that no other gets its id.
+            self._balls[id(trial)] = trial, read[0] / read[1] if len(read) == 2 and read[1] > 0.0 else None
+        return self._balls[id(trial)][1]
 
     def passing(self, trials: list[ShapeTrial]) -> tuple[ShapeDesign | None, str | None]:
         """The first of ``trials`` that passes ``check`` at a rated pressure, or why the last one does not."""
         why = None
         for trial in trials[:_JUDGED]:
-            source = source_of(self.base, _texts(trial.changes))
-            reason, evaluation = judge(source, self.library, predicted=True)
+            reason, evaluation = judge(source_of(self.base, _texts(trial.changes)), self.library, predicted=True)
             if reason is not None or evaluation is None:
                 why = f"`check` refuses the best: {'' if reason is None else reason[1]}"
                 continue
@@ -329,12 +331,11 @@ class _Search:
     def _meets(self, trial: ShapeTrial) -> bool:
         """True if a trial meets the target; what the nearest misses is kept."""
         misses = _misses(self.target, trial)
-        size = max((miss for miss, _ in misses.values()), default=0.0)
-        if misses and size < self._far.get(trial.shape, np.inf):
-            self._far[trial.shape] = size
-            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, (miss, _) in misses.items())
-            meets = " ".join(option for _, option in misses.values())
-            self.nearest[trial.shape] = f"the nearest, in {trial.resin.name}, misses {listed}; it meets {meets}"
+        size = max((miss for miss, _, _ in misses.values()), default=0.0)
+        if misses and size < self.nearest.get(trial.shape, (np.inf,))[0]:
+            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, (miss, _, _) in misses.items())
+            met = {f"target.{key}": float(f"{value:.3g}") for _, key, value in misses.values()}
+            self.nearest[trial.shape] = size, (f"the nearest, in {trial.resin.name}, misses {listed}", met)
         return not misses
 
 
@@ -347,27 +348,28 @@ def _drawn(shape: str, sizes: Mapping[str, float]) -> DomeShape:
     return shape_of(shape, 10.0, 10.0 * _DRAWN_SHARES[-1], own)
 
 
-def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str]]:
-    """Requirements that a trial misses, each with the share by which it does and the option that it meets."""
+def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str, float]]:
+    """Requirements that a trial misses, each with the share by which it does, its field, and what the trial meets."""
     wanted, figures = target.target, trial.figures
     stiffness, shape = figures.stiffness_at(wanted.stiffness_depth_mm), trial.sensor.dome.shape
     outer = 2.0 * max(shape.outer_radius, trial.sensor.dome.inner_radius)
     bounds = [
-        ("force range", figures.force_high, wanted.force_range_N, True, "force_range"),
-        ("least stiffness", stiffness, wanted.stiffness_least_N_per_mm, True, "stiffness_least"),
-        ("greatest stiffness", stiffness, wanted.stiffness_most_N_per_mm, False, "stiffness_most"),
-        ("diameter", outer, wanted.max_diameter_mm, False, "max_diameter"),
-        ("footprint", trial.footprint, wanted.max_footprint_mm, False, "max_footprint"),
-        ("height", shape.outer_height, wanted.max_height_mm, False, "max_height"),
+        ("force range", figures.force_high, True, "force_range_N"),
+        ("least stiffness", stiffness, True, "stiffness_least_N_per_mm"),
+        ("greatest stiffness", stiffness, False, "stiffness_most_N_per_mm"),
+        ("diameter", outer, False, "max_diameter_mm"),
+        ("footprint", trial.footprint, False, "max_footprint_mm"),
+        ("height", shape.outer_height, False, "max_height_mm"),
     ]
     misses = {}
     if (wanted_kPa_per_N := wanted.sensitivity_kPa_per_N) is not None:
         gap = abs(figures.sensitivity / wanted_kPa_per_N - 1.0)
         if gap > wanted.tolerance_percent / 100:
-            misses["sensitivity"] = gap, f"`sensitivity` {figures.sensitivity:.3g}"
-    for name, has, bound, least, option in bounds:
+            misses["sensitivity"] = gap, "sensitivity_kPa_per_N", figures.sensitivity
+    for name, has, least, key in bounds:
+        bound = getattr(wanted, key)
         if bound and not (has >= bound if least else has <= bound):
-            misses[name] = abs(has / bound - 1.0), f"`{option}` {(0.995 if least else 1.005) * has:.3g}"
+            misses[name] = abs(has / bound - 1.0), key, (0.995 if least else 1.005) * has
     return misses
 
 
