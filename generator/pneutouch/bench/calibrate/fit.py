@@ -17,7 +17,7 @@ from pneutouch.bench.calibrate.fitted_atlas import (
 )
 from pneutouch.bench.calibrate.fitted_solid import SolidExpansion
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths, information
-from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, onset_errors, points_of
+from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC, MODULUS, NAMES, OFFSET_PRIOR, CalibrationParameters
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve
 from pneutouch.errors import InputError
@@ -46,7 +46,8 @@ class CalibrationFit:
     """Result of a fit; coordinates as in `CalibrationParameters`.
 
     Attributes:
-        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, at the runs' ambient.
+        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, at the ambient pressure of
+            the runs.
         problem, solution: Least-squares problem, weighted with the scatter of the runs, and its solution.
         covariance: Uncertainty of the solution.
         half_width: Half-widths of the 95 % intervals, (k,); NaN for a parameter on a bound or without data and prior.
@@ -107,7 +108,8 @@ def fit(
     sensor = sensor.replace(ambient_pressure=observations.ambient)
     points, count = points_of(observations), len(parameters.fitted)
     if other_shape(sensor):
-        points = points._replace(onset_error=onset_errors(observations, OFFSET_PRIOR))
+        stated = np.array([curve.onset_error for curve in observations.curves])
+        points = points._replace(onset_error=np.where(np.isfinite(stated), stated, OFFSET_PRIOR))
         floor = OTHER_SHAPES * floor
     if not parameters.priors and int(points.use.sum()) <= count:
         raise InputError(

@@ -29,7 +29,8 @@ class Covariance:
         information: Information of the data alone, at the average scatter of the runs, (k, k).
         freedom: Degrees of freedom of the scatter between runs, infinite where too few runs are repeated to show it.
         share: Share of the data in each parameter's variance, (k,).
-        considered: Shift of each estimate by one standard deviation of each uncertain parameter not fitted, (k, 5).
+        considered: Shift of each estimate by one standard deviation of each uncertain parameter not fitted, (k, 5); in
+            ``matrix``.
         even: Parameters that have a uniform prior, (5,).
         runs: Number of runs and injections with a point in the fit.
         alone: Number of the only run that determines each parameter, -1 where several do, (k,)."""

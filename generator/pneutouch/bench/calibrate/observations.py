@@ -204,12 +204,6 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
     return np.array([spread * np.sqrt(0.5 * np.pi / max(onsets.size, 1)) for onsets in groups])
 
 
-def onset_errors(observations: Observations, unknown: float) -> Array:
-    """Standard errors of the first contacts as each record states them, mm, (c,); ``unknown`` where it does not."""
-    errors = np.array([curve.onset_error for curve in observations.curves])
-    return np.where(np.isfinite(errors), errors, unknown)
-
-
 def _slopes(travel: Array, values: Array) -> Array:
     """Slopes of values by travel along each row, (c, m), from the origin; zero at repeated travels (padding)."""
     slopes = np.zeros_like(values)
