@@ -204,7 +204,8 @@ def respond(
     """Simulate a step of force or travel, or a sine from no load to a peak, through wall, gas, line and gauge.
 
     Without a size the load is half of the range; without ``sine_Hz`` it is a step. ``duration_s`` None: 1 s, or ten
-    cycles; ``seed`` sets the gauge's noise. `Result.save` writes the signals. Raises InputError beyond the range.
+    cycles; ``seed`` sets the gauge's noise. `Result.save` writes the signals. Raises InputError for a load beyond the
+    range.
     """
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.mechanics.models.choice import model_options

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 class ResolvedDesign:
     """A design with everything that it names. ``where`` is the file as the user gave it, for messages.
 
-    ``calibration`` and ``gauge`` are None if none is named, the mould's two if the membrane is printed.
+    ``calibration`` and ``gauge`` are None if none is named, the mould's printer and material if the membrane is
+    printed.
     """
 
     name: str

@@ -11,7 +11,8 @@ lib3mf 2.5 cannot read a model back whose XML has a text of 65536 bytes or more,
 XML would escape are therefore of the type xs:base64Binary, all others xs:string; they are continued in further entries
 where they are long, and the longest stand last.
 
-On a tray every part is an object of its own, placed by one build item; bodies of one print are components of one.
+On a tray every part is an object of its own, placed by one build item; bodies that grow in one print are the components
+of one object.
 """
 
 import base64

@@ -36,7 +36,8 @@ def predict(
     answers: Mapping[str, Answered] = MappingProxyType({}),
     fillings: Sequence[Filling] = (),
 ) -> SensorPrediction:
-    """Predict a sensor at ascending driving pressures (MPa) and ``fillings``; ``closure`` is the membrane model's.
+    """Predict a sensor at ascending driving pressures (MPa) and at ``fillings``; ``design`` is its name and ``closure``
+    the membrane model's.
 
     ``model`` is a name of `MODEL_CHOICES` or ``usual``. ``auto`` takes the cheapest model whose stated error meets the
     ``tolerance`` (a fraction) and gives the reason. ``answers`` holds answers already computed in a batch of sensors,

@@ -168,7 +168,8 @@ def ratings(
 
     All limits but the gauge range are met at pressures proportional to the modulus, so all have the uncertainty of the
     limit pressure. The scatter of the break strain is covered by using the least elongation at break instead.
-    ``calibration`` is that of the built sensor, None without one. ``numerical``: the limit pressure's relative error.
+    ``calibration`` is that of the built sensor, None without one. ``numerical`` is the model's greatest relative error
+    of the limit pressure.
     """
     batch = SensorBatch.join([batch_of(s, [0.0]) for s in sensors])
     spread = limit_spread(batch, material, printer, numerical, calibration)

@@ -81,7 +81,8 @@ def code_fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
 
 
 def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator, who loads ``job_files`` and chooses resins; ``left_out``: reason by file."""
+    """Markdown for the operator, who loads ``job_files`` and chooses resins at the machine; ``left_out``: reason by
+    file not written."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = glue_volume(scene, assembly.layout) / ML
     mixed = f"-{assembly.job('membrane').replace(' ', '-')}."

@@ -150,7 +150,8 @@ _ANYWHERE = 2
 _FEW = 2
 """Number of resins up to which each is followed at several candidates; of more, each only at its best."""
 _PROBED, _WITHOUT_FIT = 3, 4
-"""Number of resins whose nearest candidate is solved although none fits by the corrected atlas, and rounds.
+"""Number of resins whose nearest candidate is solved although none fits by the corrected atlas, and for how many
+rounds.
 """
 
 

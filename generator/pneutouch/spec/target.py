@@ -47,7 +47,11 @@ class TargetFigures(SparseTable):
         None, unit="mm", low=1, high=3, help="Depth, 1 or 3, at which the stiffness is bounded; left out: the mean."
     )
     max_diameter_mm: float | None = number(
-        None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
+        None,
+        unit="mm",
+        low=2,
+        high=300,
+        help="Greatest outer diameter of the unloaded dome: 2 (R0 + t0), of a flat one 2 R0.",
     )
     max_footprint_mm: float | None = number(
         None,

@@ -90,7 +90,8 @@ def recommend(
 ) -> PressureAdvice:
     """Driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
-    The sensor must lie in the atlas. Raises InputError for a preload (N) or pattern out of reach."""
+    The sensor must lie in the atlas. Raises InputError if it never reaches the preload (N), or for an impossible
+    pattern."""
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)
     levels = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]

@@ -230,7 +230,8 @@ def characterize(
 
 
 def _design_of(data: Path, library: Library) -> tuple[str, dict[str, Any]]:
-    """Name of the design that a campaign names, and the campaign's changes to it. Raises InputError for none."""
+    """Name of the design that a campaign names, and the campaign's changes to it. Raises InputError if it names
+    none."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))

@@ -57,7 +57,8 @@ def write_charts(
 
 
 def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOff:
-    """Trade-off at the target's driving pressure, else at the best design's: fronts, window, designs in it.
+    """Trade-off at the target's driving pressure, else at the best design's: fronts, the target's window, designs in
+    it.
 
     Under a contact that the atlas does not cover the fronts are the atlas's, corrected by the solid along them."""
     problem, designs = selection.problem, _best(selection)
@@ -87,7 +88,8 @@ def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOf
 def _fronts(
     selection: SelectionRun, problem: SelectionProblem, library: Library
 ) -> tuple[list[TradeOffFront], tuple[float, float] | None, str]:
-    """Fronts, their median and greatest error (None by the atlas), and a caption; corrected by the solid."""
+    """Fronts, their median and greatest error (None by the atlas), and a caption; corrected where the solid
+    searched."""
     if selection.by_solid is None:
         return front(problem), None, ""
     drawn = contact_front(problem, CandidateSolver(selection.base, selection.assignments, library))

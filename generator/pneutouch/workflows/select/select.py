@@ -182,7 +182,8 @@ def found(
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
-    """The run with its answer, by the atlas, or the solid if only that covers contact or law."""
+    """The run with its answer, by the atlas, or by the solid if only that covers the base's contact or a resin's
+    law."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
