@@ -71,11 +71,30 @@ def test_a_shape_that_cannot_meet_the_target_says_what_its_nearest_misses(librar
     assert found.record.met is False
 
 
-def test_a_target_changed_as_the_nearest_design_says_is_met(library):
-    wanted = {"sensitivity_kPa_per_N": 8.0, "max_diameter_mm": 12.0}
-    offered = select_shapes(target(["cap"], **wanted), "here", library).missed["cap"][1]
-    wanted |= {key.removeprefix("target."): value for key, value in offered.items()}
-    assert select_shapes(target(["cap"], **wanted), "here", library).record.met
+@pytest.mark.parametrize(
+    ("shape", "wanted"),
+    [
+        ("cap", {"sensitivity_kPa_per_N": 8.0, "max_diameter_mm": 12.0}),
+        ("hemisphere", {"sensitivity_kPa_per_N": 4.0, "force_range_N": 6.0, "max_diameter_mm": 16.0}),
+    ],
+)
+def test_a_target_with_any_one_of_the_changes_offered_is_met(shape, wanted, library):
+    """Each change gives up what it names alone, so that nobody gives up more than he must."""
+    offers = select_shapes(target([shape], **wanted), "here", library).missed[shape][1]
+    assert offers
+    for offer in offers:
+        changed = wanted | {key.removeprefix("target."): value for key, value in offer.items()}
+        assert select_shapes(target([shape], **changed), "here", library).record.met
+
+
+def test_the_wall_of_a_flat_shape_lies_within_its_diameter():
+    content = {
+        "target": {"sensitivity_kPa_per_N": 2.0, "max_diameter_mm": 20.0},
+        "given": {"inner_radius_mm": 10.0, "wall_thickness_mm": 1.0},
+    }
+    assert validate(Target, content | {"setting": {"shapes": ["disc"]}}, "here").given.inner_radius_mm == 10.0
+    with pytest.raises(InputError):
+        validate(Target, content, "here")
 
 
 @pytest.mark.parametrize("shape", ["discus", "profile"])

@@ -295,7 +295,8 @@ class Target(SparseTable):
     @model_validator(mode="after")
     def _fits(self) -> "Target":
         largest, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
-        wall = self.given.wall_thickness_mm or 0.0
+        # A search over shapes counts the inner diameter alone: the wall of a disc lies within it.
+        wall = self.given.wall_thickness_mm or 0.0 if self.setting.shapes is None else 0.0
         if largest is not None and radius is not None and 2 * (radius + wall) > largest:
             raise FieldsError(
                 f"target.max_diameter_mm = {largest:g} and given.inner_radius_mm = {radius:g} contradict each other: "

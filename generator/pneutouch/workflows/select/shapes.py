@@ -18,7 +18,6 @@ from pneutouch.errors import ComputationError, InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.response import Figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
 from pneutouch.results.selection import ShapeRecord, ShapesRecord
@@ -31,6 +30,7 @@ from pneutouch.workflows.select.base import ANY, base_scene, setting_changes
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, judge, source_of
 from pneutouch.workflows.select.document import Typed, in_file
 from pneutouch.workflows.select.select import PLATE_SHARE, resins_of
+from pneutouch.workflows.select.shape_trial import ShapeTrial, next_size, slope_of
 
 VARIANTS: dict[SearchedShape, tuple[dict[str, float], ...]] = {
     "hemisphere": ({},),
@@ -57,28 +57,8 @@ _SHORTEST = 0.1
 """Least range of a design over the depth of its test: our choice; where a plate soon lies on the flange it is less."""
 _STEP = 0.01
 """Radii and walls are multiples of this, mm."""
-Missed = tuple[str, Mapping[str, float]]
-"""Why a shape has no design, and what its nearest design meets by the fields of a target."""
-
-
-@dataclass(frozen=True)
-class ShapeTrial:
-    """A design that was pressed by the solid: its changes to the base, by ``table.key``, sensor and state; and slope
-    of its ln sensitivity by ln wall, NaN from a single solve."""
-
-    shape: str
-    resin: CandidateResin
-    changes: Mapping[str, Any]
-    sensor: Sensor
-    state: SensorState
-    footprint: float
-    slope: float = float("nan")
-
-    @property
-    def figures(self) -> Figures[float]:
-        """Figures of its press."""
-        assert self.state.figures is not None
-        return self.state.figures
+Missed = tuple[str, tuple[Mapping[str, float], ...]]
+"""Why a shape has no design, and changes of the target's fields each of which one of its designs meets."""
 
 
 @dataclass(frozen=True)
@@ -134,9 +114,14 @@ class ShapeSelection:
         return ShapesRecord(bool(rows), rows, self.reasons(), dict(self.left_out), self.solves)
 
     def reasons(self, typed: Typed = in_file) -> dict[str, str]:
-        """Why shapes have no design; ``typed`` writes a field of the target with what the nearest design meets."""
-        offers = {name: " ".join(typed(*one) for one in met.items()) for name, (_, met) in self.missed.items()}
-        return {name: why + (f"; it meets {offers[name]}" if met else "") for name, (why, met) in self.missed.items()}
+        """Why shapes have no design; ``typed`` writes a field of the target with what a design meets."""
+        offers = {
+            name: " or ".join(" ".join(typed(*one) for one in met.items()) for met in changes)
+            for name, (_, changes) in self.missed.items()
+        }
+        return {
+            name: why + (f"; met by {offers[name]}" if offers[name] else "") for name, (why, _) in self.missed.items()
+        }
 
 
 def select_shapes(
@@ -160,7 +145,7 @@ def select_shapes(
         progress(2 * number + 1, 2 * len(shapes), f"{shape}, print rules")
         found, why = search.passing(met)
         if found is None:
-            missed[shape] = (why, {}) if why else search.nearest.get(shape, (0.0, (search.refused, {})))[1]
+            missed[shape] = (why, ()) if why else search.missed(shape)
         else:
             designs.append(found)
     designs.sort(key=lambda one: search.order(one.trial))
@@ -169,13 +154,14 @@ def select_shapes(
 
 @dataclass
 class _Search:
-    """Trials for a target on a base. ``nearest``: least miss of each shape; ``refused``: why the last has no press."""
+    """Trials for a target on a base. ``nearest``: least miss of each shape, by the one field that is missed or by "";
+    ``refused``: why the last trial has no press."""
 
     target: Target
     base: ResolvedDesign
     library: Library
     solves: int = 0
-    nearest: dict[str, tuple[float, Missed]] = field(default_factory=dict)
+    nearest: dict[tuple[str, str], tuple[float, str, Mapping[str, float]]] = field(default_factory=dict)
     refused: str = "none of its designs has a range that a straight line explains"
     _balls: dict[int, tuple[ShapeTrial, float | None]] = field(default_factory=dict)
 
@@ -276,11 +262,13 @@ class _Search:
             gap = known[at] = (
                 0.0 if wanted_kPa_per_N is None else float(np.log(found.figures.sensitivity / wanted_kPa_per_N))
             )
+            if [*_misses(self.target, found)] == ["sensitivity"]:
+                self._meets(found)
             best = found if abs(gap) == min(map(abs, known.values())) else best
             if abs(gap) < _MET * self.target.target.tolerance_percent / 100 and len(known) > 1:
                 break
-            at = _next(known, low, high, falls=wall is None)
-        return None if best is None else replace(best, slope=_slope(known))
+            at = next_size(known, low, high, falls=wall is None)
+        return None if best is None else replace(best, slope=slope_of(known))
 
     def _bounds(self, radius: float, wall: float | None) -> tuple[float, float, float]:
         """Least and greatest size solved for, mm, and the first one: of the wall, or of the radius if that is given."""
@@ -328,15 +316,27 @@ class _Search:
             self.refused = "; ".join(part for part in (error.problem, error.remedy) if part)
             return None
 
+    def missed(self, shape: str) -> Missed:
+        """Why a shape has no design, with changes of one field that would do, else of what its nearest misses."""
+        if not (nearest := self.nearest.get((shape, ""))):
+            return self.refused, ()
+        _, why, met = nearest
+        alone = sorted((size, key) for (of, key), (size, *_) in self.nearest.items() if of == shape and key)
+        return why, tuple(self.nearest[shape, key][2] for _, key in alone) or (met,)
+
     def _meets(self, trial: ShapeTrial) -> bool:
         """True if a trial meets the target; what the nearest misses is kept."""
         misses = _misses(self.target, trial)
-        size = max((miss for miss, _, _ in misses.values()), default=0.0)
-        if misses and size < self.nearest.get(trial.shape, (np.inf,))[0]:
-            listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, (miss, _, _) in misses.items())
-            met = {f"target.{key}": float(f"{value:.3g}") for _, key, value in misses.values()}
-            self.nearest[trial.shape] = size, (f"the nearest, in {trial.resin.name}, misses {listed}", met)
-        return not misses
+        if not misses:
+            return True
+        size = max(miss for miss, _, _ in misses.values())
+        listed = ", ".join(f"{name} by {100 * miss:.3g} %" for name, (miss, _, _) in misses.items())
+        met = {f"target.{key}": float(f"{value:.3g}") for _, key, value in misses.values()}
+        for alone in ("", *(misses if len(misses) == 1 else ())):
+            if size < self.nearest.get((trial.shape, alone), (np.inf,))[0]:
+                why = f"the nearest, in {trial.resin.name}, misses {listed}"
+                self.nearest[trial.shape, alone] = size, why, met
+        return False
 
 
 def _drawn(shape: str, sizes: Mapping[str, float]) -> DomeShape:
@@ -371,25 +371,6 @@ def _misses(target: Target, trial: ShapeTrial) -> dict[str, tuple[float, str, fl
         if bound and not (has >= bound if least else has <= bound):
             misses[name] = abs(has / bound - 1.0), key, (0.995 if least else 1.005) * has
     return misses
-
-
-def _slope(known: Mapping[float, float]) -> float:
-    """Slope of ln sensitivity by ln size between the two solves nearest to the target; NaN with one."""
-    if len(known) < 2:
-        return float("nan")
-    (a, low), (b, high) = sorted(known.items(), key=lambda one: abs(one[1]))[:2]
-    return (high - low) / float(np.log(b / a))
-
-
-def _next(known: Mapping[float, float], low: float, high: float, *, falls: bool) -> float:
-    """Size to try next, by a secant in logarithms within the bracket of what is known; ``falls``: as of a wall."""
-    low = max(low, *(size if (gap > 0) == falls else low for size, gap in known.items()))
-    high = min(high, *(size if (gap > 0) != falls else high for size, gap in known.items()))
-    (a, first), (b, second) = [*known.items()][-2:] if len(known) > 1 else ((1.0, 0.0), *known.items())
-    # Of membranes the sensitivity falls about as the first power of the wall.
-    slope = (second - first) / float(np.log(b / a)) if len(known) > 1 else (-1.0 if falls else 1.0)
-    at = b * float(np.exp(np.clip(-second / slope, -0.7, 0.7))) if slope else 0.0
-    return at if low < at < high else float(np.sqrt(low * high))
 
 
 def _texts(changes: Mapping[str, Any]) -> list[str]:
