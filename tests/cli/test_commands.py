@@ -59,6 +59,7 @@ def test_list_shows_designs_materials_printers_and_parts(command, root):
     document = json.loads(command("list", "--json", cwd=root).stdout)
     assert set(document) == {
         "designs",
+        "pads",
         "specimens",
         "examples",
         "calibrations",

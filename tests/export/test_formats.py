@@ -88,7 +88,7 @@ def test_one_3mf_a_job_holds_its_bodies_as_they_lie_on_the_bed(case, evaluated, 
     one_print = ("print.connector_profile=objet260-connex",) if "plug" in case else ()
     evaluation = evaluated(*words, *one_print, model="membrane")
     name, solids = evaluation.scene.name, {solid.name: solid for solid in evaluation.assembly.solids}
-    files = job_files(evaluation)
+    files = job_files(evaluation.scene.name, evaluation.assembly, {})
     assert {file for file in files if file.endswith(".3mf")} == {f"jobs/{name}-{job}.3mf" for job in expected}
     machines = {job: evaluation.assembly.machine(bodies[0])[0] for job, bodies in expected.items()}
     configured = {f"jobs/{name}-{job}.ini" for job, machine in machines.items() if machine.process == "filament"}

@@ -72,7 +72,7 @@ def sliced(model, kind, settings, folder):
 def test_every_filament_job_is_sliced_and_takes_what_is_stated(case, tmp_path):
     evaluation = evaluate("paper-dome", CASES[case])
     stated = {f"jobs/paper-dome-{job.job}": job for job in estimate(made_of(evaluation.assembly))}
-    files = job_files(evaluation)
+    files = job_files(evaluation.scene.name, evaluation.assembly, {})
     configured = [name for name in files if name.endswith(".ini")]
     assert len(configured) == len([job for job in stated.values() if "filament" in job.printer])
     for name in configured:

@@ -34,6 +34,7 @@ WRITTEN = {
     "scan.json": "scan",
     "truth.json": "truth",
     "specimen.json": "specimen-report",
+    "pad.json": "pad-report",
     "stack.json": "stack",
 }
 """Names of schemas by the file that holds such a document."""

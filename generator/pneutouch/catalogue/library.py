@@ -130,6 +130,12 @@ def _specimen(content: dict[str, Any], where: str) -> BaseModel:
     return validate_specimen(content, where)
 
 
+def _pad(content: dict[str, Any], where: str) -> BaseModel:
+    from pneutouch.spec.pad import PadFile
+
+    return validate(PadFile, content, where)
+
+
 def _calibration(content: dict[str, Any], where: str) -> BaseModel:
     from pneutouch.spec.calibration import SensorCalibration
 
@@ -160,6 +166,7 @@ def _by_family(union: Any) -> ValidateFile:
 KINDS: dict[str, FileKind] = {
     "designs": FileKind(_one(DesignFile), "designs"),
     "specimens": FileKind(_specimen, "designs/specimens"),
+    "pads": FileKind(_pad, "designs/pads"),
     "calibrations": FileKind(_calibration, "calibrations"),
     "materials": FileKind(_one(Material), "printprofiles/materials"),
     "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
@@ -229,20 +236,36 @@ class Library:
                 f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design "
                 "of a sensor"
             )
+        if name in (pads := self.paths("pads")):
+            cell = read_toml(pads[name]).get("pad", {}).get("cell")
+            remedy = f"give its cell, {cell}" if isinstance(cell, str) else None
+            raise InputError(
+                "is a pad; it can be built and checked, this command needs the design of one sensor",
+                key="design",
+                value=name,
+                remedy=remedy,
+            )
         example, remedy = example_remedy(name), f"give the name or the path of a design.{nearest(name, paths)}"
         remedy = f"{example}; or {remedy}" if example else remedy
         raise InputError("no such design or file", key="design", value=name, remedy=remedy)
 
     def specimen_file(self, name: str) -> Path | None:
         """The file of a specimen given by name or path; None if the name is a sensor's or unknown."""
-        files = self.paths("specimens")
+        return self._file_with("specimens", name, "block")
+
+    def pad_file(self, name: str) -> Path | None:
+        """The file of a pad given by name or path; None if the name is a sensor's or unknown."""
+        return self._file_with("pads", name, "pad")
+
+    def _file_with(self, kind: str, name: str, table: str) -> Path | None:
+        files = self.paths(kind)
         if name in files:
             return files[name]
         try:
             path = self.design_file(name)
         except InputError:
             return None
-        return path if is_file(path) and is_specimen(read_toml(path)) else None
+        return path if is_file(path) and table in read_toml(path) else None
 
 
 def is_specimen(content: dict[str, Any]) -> bool:

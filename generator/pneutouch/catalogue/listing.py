@@ -10,15 +10,27 @@ from pneutouch.spec.campaign import CAMPAIGN, Campaign, design_of
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.grade import MixingCurve
 from pneutouch.spec.material import Material
+from pneutouch.spec.pad import PadFile
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
 from pneutouch.spec.values import name_of
 
-_LISTED = ("designs", "specimens", "examples", "calibrations", "materials", "mixing", "printers", "gauges", "parts")
+_LISTED = (
+    "designs",
+    "pads",
+    "specimens",
+    "examples",
+    "calibrations",
+    "materials",
+    "mixing",
+    "printers",
+    "gauges",
+    "parts",
+)
 _GROUPS = {kind: [kind] for kind in _LISTED} | {"examples": [], "parts": ["ports", "seats", "mounts", "tubes"]}
 
 
-_NAMED_BY_FILE = ("designs", "specimens", "calibrations")
+_NAMED_BY_FILE = ("designs", "pads", "specimens", "calibrations")
 """Kinds whose names obey `plain_name`: users write files of these kinds."""
 
 
@@ -61,7 +73,7 @@ def _read(library: Library, kind: str, name: str) -> dict[str, str]:
 
 
 def _title(thing: Any) -> str:
-    if isinstance(thing, DesignFile | Specimen):
+    if isinstance(thing, DesignFile | PadFile | Specimen):
         return thing.document.title
     if isinstance(thing, Material):
         return f"{thing.label}, {thing.kind_shown}"

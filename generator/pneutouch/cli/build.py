@@ -52,11 +52,12 @@ def build(
 ) -> None:
     """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
     stack: Path | None = None
-    if _is_specimen(design):
+    if (kind := _drawn_kind(design)) is not None:
         flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
-        cli.refuse_flags(context, flags, "a specimen, which has no prediction", design)
-        cli.refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-        folder, findings = _build_specimen(design, out, cli.changes(set_, calibration), name)
+        cli.refuse_flags(context, {**flags, **_VOXEL_FLAGS}, f"a {kind}, which is drawn alone", design)
+        run, steps = _BUILDS[kind]()
+        with _progress(steps) as report:
+            folder, findings = run(design, out, cli.changes(set_, calibration), progress=report, called=name)
     else:
         evaluation = (
             _from_3mf(design, context, name)
@@ -81,7 +82,7 @@ def build(
         echo(str(folder))
         if stack is not None:
             echo(str(stack))
-        if not _is_specimen(design) and not _is_3mf(design):
+        if kind is None and not _is_3mf(design):
             report_next("plan", design, *set_words(_from_ambient(set_, evaluation), calibration))
 
 
@@ -96,13 +97,11 @@ def check(
     json: cli.JsonOption = False,
 ) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
-    if _is_specimen(design):
-        from pneutouch.workflows.specimen.build import check_specimen
-
-        cli.refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
+    if (kind := _drawn_kind(design)) is not None:
+        cli.refuse_flags(context, _VOXEL_FLAGS, f"a {kind}, which is drawn alone", design)
         curves: tuple[Any, ...] = ()
-        with bar("checking the specimen"):
-            findings = check_specimen(design, cli.changes(set_, calibration), deep=deep)
+        with bar(f"checking the {kind}"):
+            findings = _CHECKS[kind]()(design, cli.changes(set_, calibration), deep=deep)
     else:
         from pneutouch.evaluation.subject import by_mixing_curve
 
@@ -154,21 +153,48 @@ def _calibrated_name(design: str, changed: dict[str, Any]) -> str | None:
     return calibrated_name(DesignSource.of(design, Library.default()), changed)
 
 
-def _is_specimen(design: str) -> bool:
+def _drawn_kind(design: str) -> str | None:
+    """Kind of a thing that is drawn alone, specimen or pad; None for a sensor."""
     from pneutouch.catalogue import Library
 
-    return not _is_3mf(design) and Library.default().specimen_file(design) is not None
+    if _is_3mf(design):
+        return None
+    library = Library.default()
+    if library.specimen_file(design) is not None:
+        return "specimen"
+    return None if library.pad_file(design) is None else "pad"
 
 
 def _is_3mf(design: str) -> bool:
     return design.lower().endswith(".3mf")
 
 
-def _build_specimen(design: str, out: Path, changed: dict[str, Any], name: str | None) -> tuple[Path, list[Finding]]:
+def _specimen_build() -> tuple[Callable[..., tuple[Path, list[Finding]]], Sequence[str]]:
     from pneutouch.workflows.specimen.build import STEPS, build_specimen
 
-    with _progress(STEPS) as report:
-        return build_specimen(design, out, changed, progress=report, called=name)
+    return build_specimen, STEPS
+
+
+def _pad_build() -> tuple[Callable[..., tuple[Path, list[Finding]]], Sequence[str]]:
+    from pneutouch.workflows.pad.build_pad import STEPS, build_pad
+
+    return build_pad, STEPS
+
+
+def _specimen_check() -> Callable[..., list[Finding]]:
+    from pneutouch.workflows.specimen.build import check_specimen
+
+    return check_specimen
+
+
+def _pad_check() -> Callable[..., list[Finding]]:
+    from pneutouch.workflows.pad.build_pad import check_pad
+
+    return check_pad
+
+
+_BUILDS = {"specimen": _specimen_build, "pad": _pad_build}
+_CHECKS = {"specimen": _specimen_check, "pad": _pad_check}
 
 
 def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[Path, list[Finding]]:

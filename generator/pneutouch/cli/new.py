@@ -23,18 +23,30 @@ def new(
     material: Annotated[str | None, parameter("material")] = None,
     shape: Annotated[str | None, parameter("shape")] = None,
     drawing: Annotated[Path | None, parameter("drawing")] = None,
+    pad: Annotated[str | None, parameter("pad")] = None,
+    pitch: Annotated[float | None, parameter("pitch")] = None,
     out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file, or copy a shipped file."""
     from pneutouch.output.new import NewFile, change_of_copy, drawn, new_design, new_from
 
     note, started = None, {"--process": process, "--material": material, "--shape": shape, "--drawing": drawing}
+    of_pad = {"--pad": pad, "--pitch": pitch}
     if from_ is not None:
-        given = " and ".join(flag for flag, value in started.items() if value is not None)
+        given = " and ".join(flag for flag, value in {**started, **of_pad}.items() if value is not None)
         if given:
             remedy = change_of_copy(from_)
             raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
         made = new_from(from_, name, out, changes(set_))
+    elif name is not None and pad is not None:
+        from pneutouch.output.new_pad import new_pad
+
+        of_cell = drawn(changes(set_), shape, drawing)
+        path, cell, note = new_pad(name, design_folder(out), pad, pitch, process, material, of_cell)
+        echo(str(cell))
+        made = NewFile(path, ("check", name if out is None else str(path)))
+    elif pitch is not None:
+        raise InputError("is the distance of the cells of a pad", key="pitch", value=pitch, remedy="give `pad` too")
     elif name is not None:
         path, note = new_design(name, design_folder(out), process, material, drawn(changes(set_), shape, drawing))
         made = NewFile(path, ("check", name if out is None else str(path)))

@@ -39,7 +39,7 @@ def show(
 
 @app.command("list")
 def list_(kind: Annotated[str | None, parameter("kind")] = None, json: JsonOption = False) -> None:
-    """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
+    """List designs, pads, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
     from pneutouch.catalogue.listing import listing
 
     content = listing(kind)

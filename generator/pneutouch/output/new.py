@@ -33,7 +33,7 @@ PRINTED_PORT = "push-in-4"
 """Port of a new design: `check` finds nothing on it with filament, stereolithography and PolyJet, and it needs no tap.
 The default of the design file is the paper's barb, whose tip and bore are too thin for some of them."""
 
-_DRAWN = ("designs", "specimens")
+_DRAWN = ("designs", "specimens", "pads")
 """Kinds of files that describe printed things."""
 
 
@@ -141,7 +141,9 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
         return NewFile(path, (COMMANDS[example.kind], str(path)))
     path = Path(source)
     if path.suffix == ".toml" or is_file(path):
-        return _copied("specimens" if is_specimen(read_toml(path)) else "designs", path, name, out)
+        content = read_toml(path)
+        kind = "specimens" if is_specimen(content) else "pads" if "pad" in content else "designs"
+        return _copied(kind, path, name, out)
     known = dict.fromkeys([*shipped, *(name for one in (*_DRAWN, *PROFILES) for name in library.paths(one))])
     problem = f"no such design, specimen, example, printer, gauge or material.{nearest(source, known)}"
     raise InputError(problem, key="from", value=source)
@@ -220,13 +222,13 @@ def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
     return path
 
 
-def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """Path of the file of a new design, checked before anything is computed for it.
+def check_free(name: str, folder: Path, *, overwrite: bool = False, kind: str = "designs") -> Path:
+    """Path of the file of a new design, or of another ``kind``, checked before anything is computed for it.
 
     Raises InputError as `check_name` does, for a file that exists (unless ``overwrite``), and for a folder that cannot
     be written.
     """
-    path = check_name(name, folder)
+    path = check_name(name, folder, kind)
     if path.is_dir():
         raise InputError("this is a folder", file=path, remedy="give another name")
     if not overwrite and (path.exists() or path.is_symlink()):
@@ -272,7 +274,7 @@ def process_values(process: str | None, material: str | None, library: Library) 
     values["connector"] = {"port": PRINTED_PORT}
     if printers[profile].is_casting:
         values["connector"]["seat"], values["mould"] = CAST_SEAT, {}
-    pressures_kPa = _pressures_kPa(library.load("materials", chosen), default)
+    pressures_kPa = usual_pressures_kPa(library.load("materials", chosen), default)
     if pressures_kPa is not None:
         values["pneumatics"] = {"driving_pressures_kPa": pressures_kPa}
     return values
@@ -330,7 +332,7 @@ def _no_profile(process: str | None, material: str | None, resin: Material | Non
     return InputError(f"{resin.label} is not made by it", key="process", value=process, remedy=f"it takes {where}")
 
 
-def _pressures_kPa(material: Material, design: DesignFile) -> list[float] | None:
+def usual_pressures_kPa(material: Material, design: DesignFile) -> list[float] | None:
     """Driving pressures for a resin: four, from 0 to a share of the limit, two digits; None if the default suits it."""
     membrane, usual_kPa = design.membrane, design.pneumatics.driving_pressures_kPa
     sensor = material_sensor(material)

@@ -93,8 +93,7 @@ class Assembly:
     @cached_property
     def print_offset(self) -> Array:
         """Shift (3,) in mm from the design frame to the print frame, whole millimetres."""
-        low = np.min([body.bounds[0] for body in self.bodies], axis=0)
-        return np.asarray(np.ceil(_MARGIN - low))
+        return print_offset(self.bodies)
 
     @cached_property
     def internal_volume(self) -> float:
@@ -141,6 +140,12 @@ class Assembly:
             return ""
         drawn_mL = self.drawn_volume / ML
         return f"the paper's idealisation: connector and tube as drawn hold {drawn_mL:.2f} mL"
+
+
+def print_offset(bodies: tuple[Body, ...]) -> Array:
+    """Shift (3,) in mm, whole millimetres, after which all coordinates of bodies are positive."""
+    low = np.min([body.bounds[0] for body in bodies], axis=0)
+    return np.asarray(np.ceil(_MARGIN - low))
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.fields import Declaration, declarations, table_of
+from pneutouch.spec.fields import Declaration, Table, declarations, table_of
 from pneutouch.spec.read import Changes, bare_value
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -78,20 +78,23 @@ def assignments(changes: Changes) -> list[str]:
     return [f"{key}={v if isinstance(v, str) and v in bare else value_text(v)}" for key, v in changes.items()]
 
 
-def design_template(title: str, values: Mapping[str, Any] | None = None, note: str | None = None) -> str:
+def design_template(
+    title: str, values: Mapping[str, Any] | None = None, note: str | None = None, model: type[Table] = DesignFile
+) -> str:
     """Commented design file: every key of its tables with default, unit, bounds and help. ``values`` replace defaults
     by table and key; [mould], [cast_ring], [accepted] and keys without a table are written only if they are in
-    ``values``. ``note`` replaces the second sentence of the first line."""
+    ``values``. ``note`` replaces the second sentence of the first line. ``model``: of another file of such tables."""
     chosen = values or {}
-    blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out. The values are the defaults.'}"]
+    kind = "design" if model is DesignFile else "pad"
+    blocks = [f"# {title}: a pneutouch {kind}. {note or 'Every key may be left out. The values are the defaults.'}"]
     blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]
-    for key in DesignFile.model_fields:
-        model = table_of(DesignFile, key)
+    for key in model.model_fields:
+        table = table_of(model, key)
         # Mould and ring are for cast membranes, and nothing is accepted at first: no clutter in a design without them.
-        if model is None or (key in ("mould", "cast_ring", "accepted") and key not in chosen):
+        if table is None or (key in ("mould", "cast_ring", "accepted") and key not in chosen):
             continue
         lines = [f"[{key}]"]
-        for entry in declarations(model):
+        for entry in declarations(table):
             default = title if (key, entry.key) == ("document", "title") else entry.default
             default = chosen.get(key, {}).get(entry.key, default)
             lines += _entry(entry, default)

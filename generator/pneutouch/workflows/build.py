@@ -4,11 +4,12 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from pneutouch import __version__
-from pneutouch.body import Body
+from pneutouch.body import Body, Solid
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
@@ -74,7 +75,9 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("3MF")
     thumbnail = picture(shown(assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
     files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), thumbnail)
-    jobs = job_files(evaluation)
+    shared = _metadata(evaluation, assembly.bodies)
+    del shared[RECIPE]
+    jobs = job_files(scene.name, assembly, shared)
     files |= jobs
     progress("STL")
     files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
@@ -119,25 +122,43 @@ def input_hash(evaluation: Evaluation) -> str:
     return hash_of(BuildRecipe.of(evaluation).inputs())
 
 
-def job_files(evaluation: Evaluation) -> dict[str, bytes]:
-    """One 3MF for each print job of the sensor by path: its bodies as they lie on the bed, in the corner of it. A cast
-    membrane has none: its mould is printed."""
-    scene, assembly, jobs = evaluation.scene, evaluation.assembly, defaultdict[str, list[Body]](list)
-    for body in assembly.bodies:
-        if not assembly.machine(body.name)[0].is_casting:
-            jobs[assembly.job(body.name)].append(body)
-    shared, files = _metadata(evaluation, assembly.bodies), {}
-    del shared[RECIPE]
+class PrintedBodies(Protocol):
+    """Bodies as they are printed: meshes, and of each by name its solid, machine, job and side on the bed."""
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """Print meshes in the design frame."""
+
+    def solid(self, name: str) -> Solid:
+        """Solid of a body."""
+
+    def machine(self, name: str) -> tuple[Printer, Mode]:
+        """Printer of a body, and its mode."""
+
+    def job(self, name: str) -> str:
+        """Name of the print job of a body; bodies of one job are printed together."""
+
+    def stands_up(self, name: str) -> bool:
+        """True if a body is printed as it stands in the design frame, False if turned over."""
+
+
+def job_files(called: str, made: PrintedBodies, shared: dict[str, str]) -> dict[str, bytes]:
+    """One 3MF for each print job of what is ``called`` so, by path: its bodies as they lie on the bed, in the corner of
+    it; ``shared`` is their metadata. A cast membrane has none: its mould is printed."""
+    jobs, files = defaultdict[str, list[Body]](list), {}
+    for body in made.bodies:
+        if not made.machine(body.name)[0].is_casting:
+            jobs[made.job(body.name)].append(body)
     for job, bodies in jobs.items():
-        name, names = f"{scene.name}-{job.replace(' ', '-')}", enumerated([body.name for body in bodies])
-        turn = np.diag([1.0, 1.0, 1.0] if assembly.stands_up(bodies[0].name) else [1.0, -1.0, -1.0])
+        name, names = f"{called}-{job.replace(' ', '-')}", enumerated([body.name for body in bodies])
+        turn = np.diag([1.0, 1.0, 1.0] if made.stands_up(bodies[0].name) else [1.0, -1.0, -1.0])
         low = np.min([(body.vertices @ turn).min(axis=0) for body in bodies], axis=0)
         item = TrayItem(job, name, tuple(bodies), np.vstack([turn, np.array([_BORDER, _BORDER, 0.0]) - low]))
-        machine = assembly.machine(bodies[0].name)[0].title
-        about = {"Description": f"Print job of {scene.name}: {names}, as it lies on the bed of the {machine}"}
+        machine = made.machine(bodies[0].name)[0].title
+        about = {"Description": f"Print job of {called}: {names}, as it lies on the bed of the {machine}"}
         files[f"{_JOB_FOLDER}/{name}.3mf"] = threemf_tray(name, [item], {**shared, **about})
-        material = assembly.solid(bodies[0].name).material
-        files |= _slicer(f"{_JOB_FOLDER}/{name}", *assembly.machine(bodies[0].name), material)
+        material = made.solid(bodies[0].name).material
+        files |= _slicer(f"{_JOB_FOLDER}/{name}", *made.machine(bodies[0].name), material)
     return files
 
 

@@ -125,7 +125,7 @@ def off_axis_press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAx
     Raises InputError for an object that would reach the connector within the depth.
     """
     _check_clearance(sensor, probe, free)
-    return _press(sensor, probe, free)
+    return placed_press(sensor, probe, free)
 
 
 def _check_clearance(sensor: Sensor, probe: StrainProbe, free: FreeState) -> None:
@@ -155,7 +155,7 @@ def _free_travel(sensor: Sensor, probe: StrainProbe, free: FreeState) -> float:
     test, base = sensor.protocol, sensor.dome.base
     leaning = test.plate_radius * np.sin(test.tilt) if test.body is None else 0.0
     top = base.ring_height if base is not None and test.body is None else 0.0
-    return float(_press(sensor, probe, free).surface.height * probe.solid.length - leaning - top)
+    return float(placed_press(sensor, probe, free).surface.height * probe.solid.length - leaning - top)
 
 
 class _Curve(NamedTuple):
@@ -210,7 +210,7 @@ def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor:
     return change(_Curve(after.indentation, after.force + force, after.rise + rise), after)
 
 
-def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
+def placed_press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     """Press of the sensor's test with its object in place, without the check of clearance."""
     press, test, solid = press_settings(sensor), sensor.protocol, probe.solid
     body = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body

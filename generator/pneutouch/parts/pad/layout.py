@@ -1,0 +1,209 @@
+"""Layout of a pad: where its cells, channels and ports lie, and the outline around them.
+
+Channels are straight, so that a wire cleans them, and run from each cell to its port. The ports are the cells' places
+enlarged by one factor; between two heights the axes are their places enlarged by a factor in between. So axes are
+nowhere nearer than the cells, and no two channels cross, whatever the pattern.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.parts.layout import Layout, lay_out
+from pneutouch.shape.meridian import Arc, Line, Point, Segment
+from pneutouch.spec.pad import PadTable
+from pneutouch.spec.part import BoltCircle, GluedFlange, PlainPlate
+
+_BETWEEN_PORTS = 1.5
+"""Space in mm between two ports or the tubes on them, for fingers: own choice."""
+_BETWEEN_DOMES = 0.5
+"""Least space in mm between two unloaded domes, for support to come out: own choice."""
+_SLOPES = (0.3, 0.2, 0.1, 0.05)
+"""Slopes of channels against the vertical that are tried, the thinnest manifold first: own choice."""
+_NARROWEST = 0.4
+"""Least radius in mm of a channel that a wire of 0.5 mm cleans: own choice."""
+_FOOT = 0.5
+"""Length in mm of the port's passage above the meeting with a channel: own choice."""
+
+
+@dataclass(frozen=True, slots=True)
+class PadLayout:
+    """Sizes of a pad, mm; heights as in `Layout` of the ``cell``. ``ports``: places enlarged by ``fan``.
+
+    ``meeting`` is the height at which the channels, of radius ``channel``, meet the passages of the ports, ``low`` the
+    manifold's underside. ``plate`` is the radius of a round plate with screw holes, 0 without one.
+    """
+
+    cell: Layout
+    places: tuple[Point, ...]
+    fan: float
+    channel: float
+    low: float
+    meeting: float
+    plate: float = 0.0
+    bolts: float = 0.0
+
+    @property
+    def ports(self) -> tuple[Point, ...]:
+        """Axes of the ports in the order of the cells."""
+        return tuple((self.fan * x, self.fan * y) for x, y in self.places)
+
+    @property
+    def middle(self) -> float:
+        """Height at which a channel passes under, or over, the axis of its cell: half way up the spigot."""
+        return 0.5 * (self.cell.floor + self.cell.plate_high)
+
+    def lean(self, cell: int) -> Point:
+        """Shift (x, y) of the channel of a cell, by the way down."""
+        share = (self.fan - 1.0) / (self.middle - self.meeting)
+        return share * self.places[cell][0], share * self.places[cell][1]
+
+    @property
+    def membrane_outline(self) -> tuple[Segment, ...]:
+        """Outline of the membrane: as far around its cells as the flange of one."""
+        return rounded_hull(self.places, self.cell.flange_radius)
+
+    @property
+    def outline(self) -> tuple[Segment, ...]:
+        """Outline of the manifold: that of the membrane, wider where ports need it."""
+        return rounded_hull(self.places, max(self.cell.flange_radius, self.port_side))
+
+    @property
+    def port_side(self) -> float:
+        """Distance from the hull of the cells within which all ports lie."""
+        return self.cell.port.reach + _FOOT + (self.fan - 1.0) * self.farthest
+
+    @property
+    def farthest(self) -> float:
+        """Distance of the farthest cell from the middle."""
+        return max(math.hypot(*at) for at in self.places)
+
+
+def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str) -> PadLayout:
+    """The layout of a pad of cells as in ``scene``. Raises InputError for parts that a pad cannot have or have space
+    for, naming what would fit."""
+    _check_parts(scene, where)
+    cell, places = lay_out(scene), table.places
+    pitch = min(math.dist(one, other) for one, other in combinations(places, 2))
+    if pitch < (least := 2.0 * max(cell.outer_radius, cell.inner_radius) + _BETWEEN_DOMES) - 1e-9:
+        raise _closer(table, where, pitch, f"the domes need {least:.4g} mm from axis to axis", least)
+    tube = 0.5 * scene.tube.outer_diameter
+    fan = max(1.0, (2.0 * max(cell.port.reach, tube) + _BETWEEN_PORTS) / pitch)
+    farthest = max(math.hypot(*at) for at in places)
+    found = _channel(scene, cell, leans=fan > 1.0)
+    if found is None:
+        wall = scene.connector_printer.smallest.wall("rigid").recommended
+        problem = f"a leaning channel leaves no wall of {wall:g} mm in a spigot {2 * cell.groove_inner:.3g} mm wide"
+        raise _closer(table, where, pitch, problem, fan * pitch)
+    channel, slope = found
+    wall, spigot = scene.connector_printer.smallest.wall("rigid").recommended, cell.floor - cell.plate_high
+    inside = max(-cell.port.hollow[-1][1], 0.0)
+    foot = inside + _FOOT + 2.0 * channel
+    fans = (fan - 1.0) * farthest / slope - 0.5 * spigot + foot if fan > 1.0 else 0.0
+    needs = max(scene.mount.plate_thickness, foot + wall, fans)
+    given = table.thickness_mm
+    if given is not None and given < needs - 1e-9:
+        remedy = f"give at least {math.ceil(100 * needs) / 100:g}, a wider pitch_mm, or a narrower port to the cell"
+        problem = f"the channels to ports {fan * pitch:.3g} mm apart need a manifold of {needs:.4g} mm"
+        raise InputError(problem, file=where, key="pad.thickness_mm", value=given, remedy=remedy)
+    low = cell.plate_high - (needs if given is None else given)
+    made = PadLayout(cell, places, fan, channel, low, low + foot)
+    return _with_plate(scene, made)
+
+
+def _channel(scene: ResolvedDesign, cell: Layout, *, leans: bool) -> tuple[float, float] | None:
+    """Radius of the channels and greatest slope with which they stay within the spigots, about whose middle they lean;
+    None if there is no space."""
+    wall = scene.connector_printer.smallest.wall("rigid").recommended
+    wide, spigot = min(0.5 * scene.seat.channel_diameter_mm, 0.85 * cell.port.passage), cell.floor - cell.plate_high
+    for slope in _SLOPES if leans else (0.0,):
+        radius = min(wide, (cell.groove_inner - wall - 0.5 * slope * spigot) / math.hypot(1.0, slope))
+        if radius >= min(wide, _NARROWEST):
+            return radius, slope
+    return None
+
+
+def _check_parts(scene: ResolvedDesign, where: str) -> None:
+    """Raise InputError for a seat, a mount, a process or a dome that a pad cannot have."""
+    if not isinstance(scene.seat, GluedFlange):
+        raise InputError(
+            "cells of a pad are glued to the manifold",
+            file=scene.where,
+            key="connector.seat",
+            value=scene.design.connector.seat,
+            remedy="take glued-flange",
+        )
+    if scene.printer.is_casting:
+        problem = "the membrane of a pad is printed, and this printer's profile casts"
+        value = scene.design.print.profile
+        raise InputError(problem, file=scene.where, key="print.profile", value=value, remedy="take another profile")
+    if not isinstance(scene.mount, PlainPlate | BoltCircle) or scene.mount.port_side != "rear":
+        problem = "the ports of a pad point backwards, and it has screw holes around it or none"
+        value, remedy = scene.design.connector.mount, "take plain, or a bolt circle with its port at the rear"
+        raise InputError(problem, file=scene.where, key="connector.mount", value=value, remedy=remedy)
+    if min(piece.bounds()[2] for piece in scene.design.membrane.dome.outer) < -1e-9:
+        problem = "this shape dips below its flange, which a pad does not"
+        value = scene.design.membrane.shape
+        raise InputError(problem, file=scene.where, key="membrane.shape", value=value, remedy="take another shape")
+
+
+def _closer(table: PadTable, where: str, pitch: float, problem: str, least: float) -> InputError:
+    key, value = ("pad.pitch_mm", table.pitch_mm) if table.points_mm is None else ("pad.points_mm", pitch)
+    remedy = f"give at least {math.ceil(100 * least) / 100:g} mm, or a smaller cell"
+    return InputError(problem, file=where, key=key, value=value, remedy=remedy)
+
+
+def _with_plate(scene: ResolvedDesign, pad: PadLayout) -> PadLayout:
+    """The layout with a round plate for the screws of a bolt circle, whose heads pass beside the outline."""
+    from dataclasses import replace
+
+    mount = scene.mount
+    if not isinstance(mount, BoltCircle):
+        return pad
+    least = scene.connector_printer.smallest.wall("rigid").recommended
+    hole = 0.5 * (mount.hole_diameter + scene.hole_undersize)
+    head = max(0.5 * mount.head_diameter + 0.5, hole + least)
+    around = max(math.hypot(*point) for piece in pad.outline for point in (piece.start, piece.end))
+    arcs = [math.hypot(*piece.centre) + piece.radius for piece in pad.outline if isinstance(piece, Arc)]
+    bolts = 0.5 * math.ceil(2.0 * (max(around, *arcs) + head))
+    return replace(pad, plate=bolts + head, bolts=bolts)
+
+
+def rounded_hull(places: Sequence[Point], reach: float) -> tuple[Segment, ...]:
+    """Outline, counter-clockwise, of all points within ``reach`` of the convex hull of places: arcs and lines."""
+    corners = _hull(places)
+    edges = [*pairwise(corners), (corners[-1], corners[0])]
+    angles = [math.atan2(b[1] - a[1], b[0] - a[0]) - 0.5 * math.pi for a, b in edges]
+    arcs = []
+    for corner, first, last in zip(corners, [angles[-1], *angles[:-1]], angles, strict=True):
+        turn = (last - first) % (2.0 * math.pi)
+        arcs.append(Arc(corner, reach, first, first + turn, "side"))
+    pieces: list[Segment] = []
+    for one, other in zip(arcs, [*arcs[1:], arcs[0]], strict=True):
+        pieces += [one, Line(one.end, other.start, "side")]
+    return tuple(pieces)
+
+
+def _hull(places: Sequence[Point]) -> list[Point]:
+    """Corners of the convex hull, counter-clockwise (Andrew's monotone chain); the two ends of places on a line.
+
+    SciPy's refuses places on a line, and importing it takes longer than a whole layout.
+    """
+    order = sorted(set(places))
+
+    def chain(points: Sequence[Point]) -> list[Point]:
+        kept: list[Point] = []
+        for at in points:
+            while len(kept) > 1 and _turn(kept[-2], kept[-1], at) <= 1e-9:
+                kept.pop()
+            kept.append(at)
+        return kept[:-1]
+
+    return [*chain(order), *chain(order[::-1])]
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

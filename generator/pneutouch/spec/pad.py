@@ -1,0 +1,111 @@
+"""The pad file: cells of one design in a pattern, one TOML a pad, known by its [pad] table."""
+
+import math
+import re
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from pneutouch.spec.design import DocumentHead
+from pneutouch.spec.fields import EntryError, FieldsError, SparseTable, Table, number
+from pneutouch.spec.values import plain_name
+
+MOST_CELLS = 64
+_LAYOUT = re.compile(r"(ring|row|hex):([1-9]\d?)|grid:([1-9]\d?)x([1-9]\d?)|points")
+_FORMS = "ring:N, row:N, hex:N, grid:NxM or points"
+
+
+def _layout(text: str) -> str:
+    found = _LAYOUT.fullmatch(text)
+    if found is None:
+        raise ValueError(f"must be {_FORMS}, such as ring:7 or grid:2x4")
+    count = int(found[2] or 2) if found[3] is None else int(found[3]) * int(found[4])
+    if not 2 <= count <= MOST_CELLS:
+        raise ValueError(f"has {count} cells; a pad has 2 to {MOST_CELLS}")
+    return text
+
+
+def _points(points: list[list[float]]) -> list[list[float]]:
+    for index, point in enumerate(points):
+        if len(point) != 2 or not all(abs(at) <= 200.0 for at in point):
+            raise EntryError("a place is [x, y], each from -200 to 200 mm", index, point)
+    return points
+
+
+class PadTable(SparseTable):
+    """[pad]: which sensor, how many of it, and where."""
+
+    left_out = ("points_mm", "thickness_mm")
+
+    cell: Annotated[str, AfterValidator(plain_name)] = Field(description="Design of each cell, by name.")
+    layout: Annotated[str, AfterValidator(_layout)] = Field(default="ring:7", description=f"Pattern: {_FORMS}.")
+    pitch_mm: float = number(12.0, unit="mm", low=2, high=100, help="Distance of neighbours; of points it is not used.")
+    points_mm: Annotated[list[list[float]], AfterValidator(_points)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=MOST_CELLS,
+        description="Places [x, y] of the cells of the layout points.",
+        json_schema_extra={"unit": "mm", "low": -200.0, "high": 200.0},
+    )
+    thickness_mm: float | None = number(
+        None,
+        unit="mm",
+        low=1,
+        high=100,
+        help="Thickness of the manifold under the membrane; left out: the least in which every channel has its way.",
+    )
+
+    @model_validator(mode="after")
+    def _points_and_layout(self) -> "PadTable":
+        if (self.layout == "points") == (self.points_mm is None):
+            given = "without" if self.points_mm is None else "is for"
+            problem = f'points_mm is the list of a layout = "points": {self.layout} {given} points_mm'
+            raise FieldsError(problem, "pad.layout", "pad.points_mm")
+        return self
+
+    @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Axes (x, y) of the cells, mm, in the order of their numbers."""
+        if self.points_mm is not None:
+            return tuple((point[0], point[1]) for point in self.points_mm)
+        kind, _, size = self.layout.partition(":")
+        sides = [int(one) for one in size.split("x")]
+        if kind == "ring":
+            return _ring(sides[0], self.pitch_mm)
+        if kind == "hex":
+            return _hexagonal(sides[0], self.pitch_mm)
+        columns, rows = (sides[0], 1) if kind == "row" else (sides[1], sides[0])
+        return tuple(
+            ((k - 0.5 * (columns - 1)) * self.pitch_mm, (0.5 * (rows - 1) - j) * self.pitch_mm)
+            for j in range(rows)
+            for k in range(columns)
+        )
+
+
+def _ring(count: int, pitch: float) -> tuple[tuple[float, float], ...]:
+    """One cell in the middle and the others around it, as far apart as the pitch or farther; of two, a row."""
+    around = count - 1
+    if around == 1:
+        return (-0.5 * pitch, 0.0), (0.5 * pitch, 0.0)
+    radius = pitch * max(1.0, 0.5 / math.sin(math.pi / around))
+    turns = [2.0 * math.pi * k / around for k in range(around)]
+    return ((0.0, 0.0), *((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns))
+
+
+def _hexagonal(count: int, pitch: float) -> tuple[tuple[float, float], ...]:
+    """The places of a triangular lattice nearest to one of them, by distance and then by angle."""
+    size = math.ceil(math.sqrt(count)) + 1
+    lattice = [
+        (pitch * (a + 0.5 * b), pitch * b * math.sqrt(0.75))
+        for a in range(-size, size + 1)
+        for b in range(-size, size + 1)
+    ]
+    lattice.sort(key=lambda at: (round(math.hypot(*at), 6), round(math.atan2(at[1], at[0]) % (2.0 * math.pi), 6)))
+    return tuple(lattice[:count])
+
+
+class PadFile(Table):
+    """A whole pad file."""
+
+    document: DocumentHead = DocumentHead(title="Pad of pneumatic touch sensors")
+    pad: PadTable

@@ -1,0 +1,129 @@
+"""Pads from `new` to the folder: sizes that fit the pitch, findings, files, and cells as sensors of their own."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.evaluation import evaluate
+from pneutouch.export.threemf_read import read_threemf
+from pneutouch.output.new_pad import new_pad
+from pneutouch.parts.pad.solids import line_volume
+from pneutouch.units import ML
+from pneutouch.workflows.pad.build_pad import build_pad
+from pneutouch.workflows.pad.findings import pad_findings, widest
+from pneutouch.workflows.pad.load import load_pad
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    return tmp_path
+
+
+def started(home, layout="ring:7", pitch=6.0, **more):
+    new_pad("tip", home / "designs", layout, pitch, **more)
+    return load_pad("tip")
+
+
+@pytest.mark.parametrize("process", ["polyjet", "filament", "resin"])
+def test_a_new_pad_breaks_no_rule(home, process):
+    pad = started(home, "grid:2x2", 14.0, process=process)
+    assert not [one for one in pad_findings(pad) if one.severity == "error"]
+
+
+@pytest.mark.slow
+@settings(max_examples=15, deadline=None)
+@given(layout=st.sampled_from(["ring:4", "row:3", "hex:7", "grid:2x3"]), pitch=st.floats(6.0, 30.0))
+def test_a_new_pad_of_any_pitch_breaks_no_rule(tmp_path_factory, layout, pitch):
+    folder = tmp_path_factory.mktemp("pads")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PNEUTOUCH_HOME", str(folder))
+        pad = started(folder, layout, round(pitch, 2))
+        assert not [one for one in pad_findings(pad) if one.severity == "error"]
+
+
+def test_a_pitch_too_small_for_the_printer_says_which_is_not(home):
+    with pytest.raises(InputError) as caught:
+        started(home, pitch=3.0)
+    assert caught.value.key == "pitch"
+    least = float(str(caught.value.remedy).split("at least ")[1].split()[0])
+    new_pad("tip", home / "designs", "ring:7", least)
+
+
+def test_neither_pad_nor_cell_replaces_a_file(home):
+    started(home)
+    for left in ("pads/tip.toml", "tip-cell.toml"):
+        other = home / "designs" / ("tip-cell.toml" if left.startswith("pads") else "pads/tip.toml")
+        text = other.read_bytes()
+        other.unlink()
+        with pytest.raises(InputError):
+            started(home)
+        assert not other.exists()
+        other.write_bytes(text)
+
+
+def test_neighbours_that_meet_when_pressed_break_a_rule(home):
+    started(home, "row:2", 17.0)
+    changes = {"membrane.inner_radius_mm": 6.8}
+    pad = load_pad("tip", changes)
+    assert 2.0 * widest(pad) > 17.0
+    (found,) = [one for one in pad_findings(pad) if one.rule == "neighbours"]
+    assert found.severity == "error" and found.excess.limit == pytest.approx(2.0 * widest(pad))
+    raised = load_pad("tip", changes | {"pad.pitch_mm": round(found.excess.limit + 0.1, 1)})
+    assert not [one for one in pad_findings(raised) if one.rule == "neighbours"]
+
+
+def test_a_cell_is_the_sensor_of_its_design_behind_its_own_channel(home):
+    pad = started(home)
+    alone = evaluate("tip-cell", {"pneumatics.dead_volume_mL": pad.dead_volumes_mL[3]})
+    ours = pad.evaluations[pad.dead_volumes_mL[3]].prediction.states[1]
+    assert np.array_equal(ours.force, alone.prediction.states[1].force)
+    tube = np.pi * (0.5 * pad.scene.tube.inner_diameter) ** 2 * pad.scene.design.pneumatics.tube_length_mm
+    assert pad.dead_volumes_mL[3] == pytest.approx((line_volume(pad.layout, 3) + tube) / ML, abs=1e-4)
+    stated = load_pad("tip", {"pneumatics.dead_volume_mL": 0.5})
+    assert stated.dead_volumes_mL == (0.5,) * 7
+
+
+def test_a_built_pad_is_read_strictly_and_has_the_same_bytes_again(home, tmp_path):
+    started(home)
+    folder, _ = build_pad("tip", tmp_path / "one")
+    again, _ = build_pad("tip", tmp_path / "two")
+    files = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    assert [path.read_bytes() for path in map(folder.joinpath, files)] == [
+        path.read_bytes() for path in map(again.joinpath, files)
+    ]
+    assert {body.name for body in read_threemf(folder / "tip.3mf").bodies} == {"membrane", "manifold"}
+    record = json.loads((folder / "pad.json").read_text())
+    assert [cell["number"] for cell in record["cells"]] == list(range(1, 8))
+    assert record["pressed_diameter_mm"] < record["pitch_mm"] <= record["port_pitch_mm"]
+    manifest = json.loads((folder / "manifest.json").read_text())
+    for mesh in manifest["mesh"].values():
+        assert mesh["volume_mm3"] == pytest.approx(mesh["exact_volume_mm3"], rel=1e-3)
+
+
+def test_a_command_of_one_sensor_names_the_cell_of_a_pad(home):
+    started(home)
+    with pytest.raises(InputError) as caught:
+        Library.default().design_file("tip")
+    assert "tip-cell" in caught.value.remedy
+
+
+def test_a_pad_without_its_cell_says_which_key_is_wrong(home):
+    started(home)
+    (home / "designs" / "tip-cell.toml").unlink()
+    with pytest.raises(InputError) as caught:
+        load_pad("tip")
+    assert caught.value.key == "pad.cell" and caught.value.value == "tip-cell"
+
+
+def test_a_pad_is_not_cast(home):
+    with pytest.raises(InputError) as caught:
+        started(home, process="casting")
+    assert caught.value.key == "process"
