@@ -10,6 +10,11 @@ from pneutouch.api.measuring import plan as plan
 from pneutouch.api.measuring import respond as respond
 from pneutouch.api.measuring import scan as scan
 from pneutouch.api.measuring import simulate as simulate
+from pneutouch.api.pad import Pad as Pad
+from pneutouch.api.pad import PadContact as PadContact
+from pneutouch.api.pad import PadEstimate as PadEstimate
+from pneutouch.api.pad import PadTouch as PadTouch
+from pneutouch.api.pad import load_pad as load_pad
 from pneutouch.api.prediction import FigureValue as FigureValue
 from pneutouch.api.prediction import PredictedState as PredictedState
 from pneutouch.api.prediction import Prediction as Prediction

@@ -23,8 +23,7 @@ LEAK = 0.01
 
 def steps(sheet: SheetData) -> list[str]:
     """Steps to make, clean and assemble the sensor of a sheet, in order."""
-    straight = [state for state in sheet.prediction.states if state.figures is not None]
-    return making(sheet.assembly, sheet.pour, sheet.rating.pressure_kPa, straight[-1] if straight else None)
+    return making(sheet.assembly, sheet.pour, sheet.rating.pressure_kPa, _straight(sheet))
 
 
 def making(
@@ -35,13 +34,36 @@ def making(
     It is tested for leaks at its greatest driving pressure, a vacuum as its pressure, but at most at the rated one;
     with a ``state`` that has figures, by `LEAK` of the pressure rise of its range."""
     scene, stands = assembly.scene, assembly.stands_up
-    stated_kPa = max(map(abs, scene.design.pneumatics.driving_pressures_kPa))
     known = {"scene": scene, "stands": stands, "pour": pour, "glue": glue_of(scene), "glues": GLUES}
-    figures = None if state is None else state.figures
-    fall = figures and (LEAK * figures.sensitivity * figures.force_high, LEAK * figures.force_high)
-    known["gasket"] = gasket_radii(assembly.layout)
-    text = filled("making.j2", **known, fill_kPa=min(stated_kPa or 1.0, rated_kPa), fall=fall)
+    known |= {"gasket": gasket_radii(assembly.layout), "layout": assembly.layout}
+    text = filled("making.j2", **known, fill_kPa=fill_kPa(scene, rated_kPa), fall=_fall(state))
     return [line for line in text.splitlines() if line]
+
+
+def _straight(sheet: SheetData) -> SensorState | None:
+    """The last state of a sheet that has figures; None if none has."""
+    return next((state for state in reversed(sheet.prediction.states) if state.figures is not None), None)
+
+
+def fill_kPa(scene: ResolvedDesign, rated_kPa: float) -> float:
+    """Pressure of the leak test."""
+    return min(max(map(abs, scene.design.pneumatics.driving_pressures_kPa)) or 1.0, rated_kPa)
+
+
+def _fall(state: SensorState | None) -> tuple[float, float] | None:
+    """Fall of the pressure in a minute (kPa) that is allowed, and the force (N) as which it reads."""
+    figures = None if state is None else state.figures
+    return figures and (LEAK * figures.sensitivity * figures.force_high, LEAK * figures.force_high)
+
+
+def leak_tools(volume_mL: float, fill_kPa: float, fall_kPa: float | None) -> str:
+    """Tools that fill a gas volume to a pressure and show its fall: a syringe of twice the air, for the wall gives way,
+    and a gauge with ten steps to the fall that is allowed."""
+    air_mL = volume_mL * fill_kPa / 101.325
+    syringe_mL = next((size for size in (5, 10, 20, 60) if size >= 2.0 * air_mL), 60)
+    range_kPa, step = 10 * math.ceil(0.15 * fill_kPa), "" if not fall_kPa else f", readable to {fall_kPa / 10:.1g} kPa"
+    gauge = f"a gauge to {range_kPa} kPa{step} (the sensor's own, if it does)"
+    return f"a syringe of {syringe_mL} mL, a valve, {gauge}, a tee and ends that take the tube"
 
 
 def making_title(pour: SiliconeBatch | None) -> str:
@@ -105,9 +127,15 @@ def print_sheet(sheet: SheetData, job_files: Sequence[str], left_out: Mapping[st
         steps=steps(sheet),
         jobs=[(job, _swaths(job), _time(job.time_min)) for job in sheet.estimates],
         plate_mm=assembly.layout.plate_high - assembly.layout.plate_low,
+        circle_mm=2 * assembly.layout.bolt_circle_radius,
         in_all=_time(math.fsum(math.nan if job.time_min is None else job.time_min for job in sheet.estimates)),
         notes=dict.fromkeys(f"{job.job}: {note}" for job in sheet.estimates for note in job.assumptions),
         glue_mL=glue_mL,
+        leak_tools=leak_tools(
+            (assembly.layout.shape.cavity_volume + assembly.drawn_volume) / ML,
+            fill_kPa(scene, sheet.rating.pressure_kPa),
+            fall[0] if (fall := _fall(_straight(sheet))) else None,
+        ),
         glue=GLUES[glue].title
         if (glue := glue_of(scene))
         else "a flexible adhesive that wets both materials, such as polyurethane",

@@ -15,12 +15,12 @@ from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.parts.pad.solids import channel_length
 from pneutouch.printability import Finding
 from pneutouch.report.pages import filled
-from pneutouch.report.print_sheet import LEAK
+from pneutouch.report.print_sheet import LEAK, fill_kPa, leak_tools
 from pneutouch.report.section import HIDDEN, circle, draw_loops
 from pneutouch.report.style import BOLD, INK, figure, svg
 from pneutouch.results.pad import PadCell, PadRecord, PadState
 from pneutouch.results.printing import JobEstimate
-from pneutouch.units import KPA
+from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.findings import widest
 from pneutouch.workflows.pad.load import ResolvedPad
 
@@ -93,7 +93,8 @@ def sheet(
     """Print sheet as Markdown, for the operator; ``left_out``: files not written, and why."""
     scene, rated_kPa = pad.scene, pad.worst.rating.pressure_kPa
     straight = [one.figures for one in pad.worst.prediction.states if one.figures is not None]
-    stated_kPa = max(map(abs, scene.design.pneumatics.driving_pressures_kPa))
+    fall = LEAK * straight[-1].sensitivity * straight[-1].force_high if straight else None
+    gas_mL = pad.layout.cell.shape.cavity_volume / ML + max(pad.dead_volumes_mL)
     return filled(
         "pad.md.j2",
         pad=pad,
@@ -107,9 +108,10 @@ def sheet(
         input_hash=input_hash,
         left_out=left_out,
         glue=GLUES[name].title if (name := glue_of(scene)) else None,
-        fill_kPa=min(stated_kPa or 1.0, rated_kPa),
+        fill_kPa=fill_kPa(scene, rated_kPa),
         rated_kPa=rated_kPa,
-        fall=LEAK * straight[-1].sensitivity * straight[-1].force_high if straight else None,
+        fall=fall,
+        leak_tools=leak_tools(gas_mL, fill_kPa(scene, rated_kPa), fall),
     )
 
 

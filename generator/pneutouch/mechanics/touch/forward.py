@@ -1,0 +1,75 @@
+"""Rigid objects on a pad: every cell answers for itself at the object's height, and the pad's answer is their sum.
+
+The membrane between the cells is taken as rigid, as a cell's own prediction takes its base plane.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.touch.cell import BALLS, TILTS, CellAnswer, CellTable
+
+ObjectKind = Literal["ball", "plate"]
+
+
+class PadAnswer(NamedTuple):
+    """m contacts with a pad of n cells: pressure rises and forces (m, n), MPa and N; the whole force (m,), N, and its
+    centre (m, 2), mm, where its line crosses the plane of the domes' tops; True (m,) where every cell is within its
+    range and one is touched."""
+
+    rise: Array
+    forces: Array
+    force: Array
+    centre: Array
+    inside: Flags
+
+
+@dataclass(frozen=True)
+class PadModel:
+    """Forward model of a pad at one driving pressure: places (n, 2) of its cells, mm; the table of one cell; and for
+    each cell (n,) its pressure rise over that of the table's cell, by its gas."""
+
+    places: Array
+    table: CellTable
+    gain: Array
+
+    def under_balls(self, place: Array, radius: Array, depth: Array) -> PadAnswer:
+        """Under balls of radii (m,) with axes at places (m, 2) and lowest points ``depth`` (m,) below the domes' tops.
+        Radii beyond the tabulated ones answer as the nearest of these."""
+        low, high = self.radii
+        size = np.clip(radius, low, high)[:, None]
+        away = place[:, None] - self.places
+        distance = np.hypot(away[..., 0], away[..., 1])
+        ball, height = np.broadcast_to(size, distance.shape), self.table.apex - depth[:, None]
+        answer = self.table.under_ball(ball, distance, np.broadcast_to(height, distance.shape))
+        towards = away / np.maximum(distance, 1e-12)[..., None]
+        return self._sum(answer, towards)
+
+    def under_plates(self, lean: Array, depth: Array) -> PadAnswer:
+        """Under plates whose planes rise by ``lean`` (m, 2), per mm along x and y, and that lie ``depth`` (m,) below
+        the domes' tops at x = y = 0."""
+        steep = np.hypot(lean[:, 0], lean[:, 1])
+        sine = steep / np.hypot(1.0, steep)
+        height = self.table.apex - depth[:, None] + lean @ self.places.T
+        answer = self.table.under_plate(np.broadcast_to(sine[:, None], height.shape), height)
+        towards = np.broadcast_to((lean / np.maximum(steep, 1e-12)[:, None])[:, None], (*height.shape, 2))
+        inside = answer.inside & (sine <= TILTS[-1])[:, None]
+        return self._sum(answer._replace(inside=inside), towards)
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Least and greatest radius of a ball, mm, that the table covers."""
+        return BALLS[0] * self.table.radius, BALLS[-1] * self.table.radius
+
+    def _sum(self, answer: CellAnswer, towards: Array) -> PadAnswer:
+        force = answer.force.sum(axis=1)
+        side = answer.sideways[..., None] * towards
+        # Of a force at the base plane, and moments about the axes across: where its line crosses the tops' plane.
+        turned = answer.moment[..., None] * towards
+        moment = (answer.force[..., None] * self.places - turned).sum(axis=1)
+        high = self.table.apex * side.sum(axis=1)
+        centre = (moment + high) / np.maximum(force, 1e-12)[:, None]
+        inside = answer.inside.all(axis=1) & (force > 0.0)
+        return PadAnswer(answer.rise * self.gain, answer.force, force, centre, inside)

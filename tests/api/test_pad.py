@@ -1,0 +1,76 @@
+"""A pad from Python: the same numbers as the mechanics, in boundary units; and what cannot be read or pressed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pneutouch as pt
+from pneutouch.errors import InputError
+from pneutouch.mechanics.touch import cell as cells
+from pneutouch.output.new_pad import new_pad
+from pneutouch.units import KPA
+from pneutouch.workflows.pad.load import load_pad as resolved
+
+
+@pytest.fixture(scope="module")
+def touch(tmp_path_factory):
+    """A pad of three cells, tabulated by coarse presses."""
+    home = tmp_path_factory.mktemp("pads")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PNEUTOUCH_HOME", str(home))
+        for name, value in (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6)):
+            patch.setattr(cells, name, value)
+        new_pad("tip", home / "designs", "row:3", 9.0)
+        yield pt.load_pad("tip").touch(12)
+
+
+def test_pressures_forces_and_places_are_those_of_the_mechanics(touch):
+    found = touch.ball([0.0, 4.0], 0.5, 8.0, [1.2, 1.5])
+    inner = touch._model.under_balls(np.array([[0.0, 0.5], [4.0, 0.5]]), np.array([8.0, 8.0]), np.array([1.2, 1.5]))
+    assert np.allclose(found.pressure_rises_kPa * KPA, inner.rise) and np.array_equal(found.forces_N, inner.forces)
+    assert np.allclose(found.force_N, found.forces_N.sum(axis=1)) and found.inside.all()
+    assert touch.driving_pressure_kPa == pytest.approx(12.0) and touch.ball_radii_mm[0] < 8.0 < touch.ball_radii_mm[1]
+
+
+def test_a_plate_is_read_as_the_plate_it_is(touch):
+    pressed = touch.plate([0.02, -0.03], 0.0, [1.0, 1.2])
+    read = touch.read(pressed.pressure_rises_kPa, noise_kPa=0.002, model_error=1e-4)
+    assert np.allclose(read.force_N, pressed.force_N, rtol=0.03)
+    assert (np.abs(read.force_N - pressed.force_N) <= 4.0 * read.force_uncertainty_N).all()
+    assert set(read.kind) <= {"plate", "either"}
+
+
+def test_a_cell_left_out_is_not_used(touch):
+    pressed = touch.plate(0.0, 0.0, 1.1)
+    spoilt = pressed.pressure_rises_kPa * np.array([1.0, 0.0, 1.0])
+    read = touch.read(spoilt, noise_kPa=0.002, left_out=[2], model_error=1e-4)
+    assert read.force_N[0] == pytest.approx(pressed.force_N[0], abs=5.0 * read.force_uncertainty_N[0])
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (lambda touch: touch.ball(0, 0, 0.5, 1), "radius_mm"),
+        (lambda touch: touch.ball([0, 1], [0, 1, 2], 8, 1), "x_mm"),
+        (lambda touch: touch.plate(0, float("nan"), 1), "slope_y"),
+        (lambda touch: touch.read([1.0, 2.0], 0.002), "pressure_rises_kPa"),
+        (lambda touch: touch.read([1.0, 2.0, 0.0], 0.0), "noise_kPa"),
+        (lambda touch: touch.read([1.0, 2.0, 0.0], 0.002, left_out=[4]), "left_out"),
+    ],
+)
+def test_what_makes_no_sense_names_the_argument(touch, call, key):
+    with pytest.raises(InputError) as caught:
+        call(touch)
+    assert caught.value.key == key
+
+
+@pytest.mark.parametrize("change", [{"membrane.shape": "disc"}, {"contact.friction": 0.5}])
+def test_a_cell_that_the_table_does_not_cover_is_refused(change, tmp_path, monkeypatch):
+    from pneutouch.workflows.pad.touch import pad_model
+
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    new_pad("tip", tmp_path / "designs", "row:2", 14.0)
+    with pytest.raises(InputError) as caught:
+        pad_model(resolved("tip", change), 5.0)
+    assert caught.value.key == "pad.cell"

@@ -1,0 +1,181 @@
+"""Contact with pads: the table of a cell against presses, sums over cells against mechanics, readings against truth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.evaluation import evaluate
+from pneutouch.mechanics.models.solid import solid_states
+from pneutouch.mechanics.solid.indenter import ball
+from pneutouch.mechanics.touch import cell as cells
+from pneutouch.mechanics.touch.cell import TABLE_ERROR, cell_table, greatest_lean
+from pneutouch.mechanics.touch.forward import PadModel
+from pneutouch.mechanics.touch.pad_reader import PadReader, answer_of, random_objects
+from pneutouch.spec.pad import PadTable
+from pneutouch.units import KPA
+
+PRESSURE = 12.0 * KPA
+NOISE = 0.002 * KPA
+CELL = {
+    "membrane.inner_radius_mm": 2.8,
+    "membrane.wall_thickness_mm": 0.8,
+    "connector.seat": "glued-flange-narrow",
+    "connector.port": "barb-3x2",
+    "connector.mount": "plain",
+    "pneumatics.dead_volume_mL": 0.5,
+}
+
+
+@pytest.fixture(scope="module")
+def sensor():
+    return evaluate("paper-dome", CELL).sensor
+
+
+@pytest.fixture(scope="module")
+def coarse(sensor):
+    """A table by coarse presses, in a quarter of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cells, "_ORDER", 4)
+        patch.setattr(cells, "_CELLS", 8)
+        patch.setattr(cells, "_STEPS", 6)
+        return cell_table(sensor, PRESSURE)
+
+
+@pytest.fixture(scope="module")
+def pad(coarse):
+    places = np.array(PadTable(cell="c", layout="ring:7", pitch_mm=9.0).places)
+    return PadModel(places, coarse, np.ones(7))
+
+
+@pytest.mark.parametrize("size", [1.0, 3.0, 15.0])
+def test_a_ball_in_the_middle_is_the_solids(coarse, sensor, size):
+    radius = size * coarse.radius
+    (state,) = solid_states(sensor.replace(waves=0, body=ball(radius), steps=10), np.array([PRESSURE]))
+    travel = np.linspace(0.3, 0.9, 5) * min(coarse.depth, state.range_end)
+    one = np.full(5, radius)
+    answer = coarse.under_ball(one, np.zeros(5), coarse.apex - travel)
+    assert np.allclose(answer.force, np.interp(travel, state.indentation, state.force), rtol=0.04)
+    assert np.allclose(answer.rise, np.interp(travel, state.indentation, state.pressure_rise), rtol=0.04)
+    assert not answer.sideways.any()
+
+
+def test_a_level_plate_is_as_many_times_one_cell(pad, coarse):
+    depth = np.array([0.4, 1.0, 1.5])
+    answer = pad.under_plates(np.zeros((3, 2)), depth)
+    one = coarse.under_plate(np.zeros(3), coarse.apex - depth)
+    assert np.allclose(answer.force, 7 * one.force) and np.allclose(answer.centre, 0.0, atol=1e-9)
+    assert np.allclose(answer.rise, one.rise[:, None])
+
+
+def test_a_leaning_plate_presses_on_its_lower_side(pad):
+    answer = pad.under_plates(np.array([[0.06, 0.0], [0.0, -0.06]]), np.array([1.0, 1.0]))
+    assert answer.centre[0, 0] < -1.0 and abs(answer.centre[0, 1]) < 1e-6
+    assert answer.centre[1, 1] > 1.0 and abs(answer.centre[1, 0]) < 1e-6
+
+
+def test_the_force_under_a_ball_without_friction_goes_through_its_middle(pad, coarse):
+    """Of one touched cell the line of the force runs from the centre of the force to the ball's middle."""
+    place, radius, depth = np.array([[1.2, 0.0]]), np.array([6.0]), np.array([1.4])
+    answer = pad.under_balls(place, radius, depth)
+    assert (answer.forces[0] > 0).sum() == 1
+    one = coarse.under_ball(radius, place[:, 0], coarse.apex - depth)
+    slope = float(one.sideways[0] / one.force[0])
+    assert slope > 0.0
+    assert answer.centre[0, 0] + slope * (radius[0] - depth[0]) == pytest.approx(1.2, abs=0.15)
+
+
+def test_what_is_mirrored_reads_mirrored(pad):
+    places = np.array([[3.1, 2.2], [3.1, -2.2]])
+    above, below = pad.under_balls(places, np.array([8.0, 8.0]), np.array([1.6, 1.6])).rise
+    mirror = [int(np.hypot(*(pad.places - (x, -y)).T).argmin()) for x, y in pad.places]
+    assert np.allclose(above, below[mirror], atol=1e-12)
+
+
+def test_gas_behind_a_cell_scales_its_reading(pad, coarse):
+    other = PadModel(pad.places, coarse, np.linspace(0.8, 1.2, 7))
+    plate = np.zeros((1, 2)), np.array([1.0])
+    assert np.allclose(other.under_plates(*plate).rise, np.linspace(0.8, 1.2, 7) * pad.under_plates(*plate).rise)
+
+
+def readings(pad, kind, count, seed):
+    """Random contacts that read at least 20 times the noise: their answers, and the readings with noise."""
+    random = np.random.default_rng(seed)
+    answer = answer_of(pad, kind, random_objects(pad, kind, 3 * count, random))
+    loud = np.flatnonzero(answer.rise.max(axis=1) > 20.0 * NOISE)[:count]
+    answer = answer._replace(**{name: getattr(answer, name)[loud] for name in answer._fields})
+    return answer, answer.rise + NOISE * random.standard_normal(answer.rise.shape)
+
+
+def covered(reading, answer):
+    """Share of forces and of centres within their 95 % intervals."""
+    force = np.abs(reading.force - answer.force) <= 1.96 * reading.force_uncertainty
+    away = reading.centre - answer.centre
+    square = np.einsum("mi,mij,mj->m", away, np.linalg.inv(reading.centre_covariance + 1e-12 * np.eye(2)), away)
+    return force.mean(), (square <= 5.99).mean()
+
+
+@pytest.mark.parametrize(("kind", "error"), [("ball", 0.06), ("plate", 0.01)])
+def test_force_and_place_are_within_their_intervals(pad, kind, error):
+    answer, rise = readings(pad, kind, 64, 3)
+    reading = PadReader(pad, NOISE, 1e-4).read(rise)
+    assert set(reading.kind) <= {kind, "either"}
+    assert min(covered(reading, answer)) >= 0.85
+    assert np.median(np.abs(reading.force / answer.force - 1.0)) < error
+
+
+@pytest.mark.slow
+def test_intervals_hold_as_often_as_they_say(pad):
+    """Of 1,200 random contacts, within three standard errors of 95 %."""
+    shares = []
+    for kind in ("ball", "plate"):
+        answer, rise = readings(pad, kind, 600, 11)
+        shares.append(covered(PadReader(pad, NOISE, 1e-4).read(rise), answer))
+    force, centre = np.mean(shares, axis=0)
+    assert 0.93 <= force <= 0.985 and 0.92 <= centre <= 0.985
+
+
+def test_a_lost_cell_is_left_out(pad):
+    answer, rise = readings(pad, "plate", 16, 5)
+    touched = answer.rise[:, 2] > 20.0 * NOISE
+    rise[:, 2] = 0.0
+    used = np.arange(7) != 2
+    assert touched.sum() > 5
+    # Another object explains some of them by chance.
+    assert (PadReader(pad, NOISE, 1e-4).read(rise[touched]).kind == "outside").mean() > 0.7
+    reading = PadReader(pad, NOISE, 1e-4, used).read(rise)
+    assert np.median(np.abs(reading.force / answer.force - 1.0)) < 0.01
+
+
+def test_what_no_object_explains_is_outside_and_noise_is_nothing(pad):
+    checkered = 0.4 * KPA * np.array([[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]])
+    quiet = NOISE * np.random.default_rng(2).standard_normal((3, 7))
+    reading = PadReader(pad, NOISE, 1e-4).read(np.concatenate([checkered, quiet]))
+    assert reading.kind.tolist() == ["outside", "none", "none", "none"]
+    assert np.isnan(reading.force[0]) and not reading.force[1:].any()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("design", "changes", "pressure"), [("paper-dome", {}, 12.0), ("paper-dome", CELL, 0.0)])
+def test_presses_that_the_table_was_not_made_of_are_within_its_error(design, changes, pressure):
+    sensor = evaluate(design, changes).sensor
+    table = cell_table(sensor, pressure * KPA)
+    plain = sensor.replace(waves=0, steps=10)
+    probe = cells.solid_probe(plain, 16)
+    free, random = cells.state_at(probe.solid, pressure * KPA), np.random.default_rng(8)
+    for _ in range(5):
+        radius = table.radius / float(random.uniform(0.06, 0.95))
+        share = float(np.sqrt(random.uniform(0.05, 0.9)))
+        lean = share * float(greatest_lean(table.depth, table.outer, np.array(radius)))
+        offset = lean * (table.outer + radius)
+        down = (table.outer + radius) * (1.0 - np.sqrt(1.0 - lean**2))
+        press = plain.replace(body=ball(radius), offset=offset)
+        curve = cells._pressed(press, probe, free, table.depth, max(table.depth - down, 0.35 * table.depth))
+        travel = np.linspace(0.0, table.depth, len(curve.values))
+        inside = travel <= min(table.depth - down, curve.end)
+        at = np.full(inside.sum(), radius), np.full(inside.sum(), offset)
+        found = table.under_ball(*at, curve.first - travel[inside])
+        for ours, column in ((found.force, 0), (found.rise, 3)):
+            known = curve.values[inside, column]
+            least = 0.1 * table.plates.values[0, 0, -1, column]
+            assert np.abs(ours - known).max() <= TABLE_ERROR * max(known.max(), least)
