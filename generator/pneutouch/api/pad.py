@@ -48,7 +48,7 @@ class PadEstimate:
 
     Attributes:
         kind: ``none``, ``ball``, ``plate``, ``either`` where they cannot be told apart, ``outside`` where neither
-            explains the readings (m,).
+            explains the readings or a cell is beyond its range (m,).
         force_N, force_uncertainty_N: Force and its standard uncertainty (m,).
         centre_mm, centre_covariance_mm2: Centre of the force as of `PadContact` (m, 2), and its covariance (m, 2, 2).
         curvature_per_mm, curvature_uncertainty_per_mm: Curvature of the object, 0 of a plate, and its standard

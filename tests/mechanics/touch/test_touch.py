@@ -147,6 +147,12 @@ def test_a_lost_cell_is_left_out(pad):
     assert np.median(np.abs(reading.force / answer.force - 1.0)) < 0.01
 
 
+def test_a_press_beyond_the_range_of_a_cell_is_outside(pad, coarse):
+    deep = pad.under_plates(np.zeros((1, 2)), np.array([1.35 * coarse.depth]))
+    assert not deep.inside[0]
+    assert PadReader(pad, NOISE, 1e-4).read(1.3 * deep.rise).kind.tolist() == ["outside"]
+
+
 def test_what_no_object_explains_is_outside_and_noise_is_nothing(pad):
     checkered = 0.4 * KPA * np.array([[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]])
     quiet = NOISE * np.random.default_rng(2).standard_normal((3, 7))

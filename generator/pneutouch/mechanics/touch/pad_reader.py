@@ -28,8 +28,8 @@ _BATCH = 64
 _STEP = 1e-3
 """Step of the differences by which derivatives are taken, in spreads of each parameter."""
 _MISFIT = 5.0
-"""Greatest mean square of the residuals, in standard deviations and by degree of freedom, of an object that explains a
-reading: chance exceeds it in less than 0.2 % with 3 degrees of freedom."""
+"""Greatest mean square of the residuals by cell, in standard deviations, of an object that explains a reading: of three
+cells or more, chance exceeds it in less than 0.2 %."""
 _FEWEST, _HEATINGS = 8, 20
 """Number of members that count at least, and of doublings of the cost at which the others begin to count."""
 _SURE = 0.95
@@ -40,9 +40,9 @@ _TOUCHED = 4.0
 
 class PadReading(NamedTuple):
     """m readings of a pad: what touches it (m,): ``none``, ``ball``, ``plate``, ``either`` where readings tell them not
-    apart, ``outside`` where neither explains them. Force with its standard uncertainty (m,), N; centre of the force
-    (m, 2), as in `PadAnswer`, with its covariance (m, 2, 2), mm; radius of a ball and its standard uncertainty (m,),
-    mm, of the curvature's mean and spread. NaN where it is not known."""
+    apart, ``outside`` where neither explains them or a cell is beyond its range. Force with its standard uncertainty
+    (m,), N; centre of the force (m, 2), as in `PadAnswer`, with its covariance (m, 2, 2), mm; curvature of the object
+    with its standard uncertainty (m,), 1/mm. NaN where it is not known."""
 
     kind: Array
     force: Array
@@ -83,7 +83,7 @@ class PadReader:
         nearest = self._nearest(rise)
         random = np.random.default_rng(self.seed)
         noisy = rise[:, None] + deviation[:, None, None] * random.standard_normal((count, _MEMBERS, rise.shape[1]))
-        out = np.full((count, _MEMBERS, 5), np.nan)
+        out = np.full((count, _MEMBERS, 6), np.nan)
         balls = nearest < _KNOWN
         for kind, of_kind in zip(KINDS, (balls, ~balls), strict=True):
             if not of_kind.any():
@@ -94,7 +94,7 @@ class PadReader:
             answer = answer_of(self.model, kind, fitted)
             square = np.square((answer.rise[:, self.cells] - rise[which]) / deviation[which, None]).sum(axis=1)
             bend = fitted[:, 2] if kind == "ball" else np.zeros(len(fitted))
-            out[which, member] = np.column_stack([square, answer.force, answer.centre, bend])
+            out[which, member] = np.column_stack([square, answer.force, answer.centre, bend, answer.inside])
         return self._told(out, balls, touched)
 
     def _told(self, members: Array, balls: Flags, touched: Flags) -> PadReading:
@@ -105,7 +105,8 @@ class PadReader:
         weight = _weights(0.5 * np.maximum(square - square.min(axis=1, keepdims=True) - 4.0 * free, 0.0))
         share = (weight * balls).sum(axis=1)
         likely = np.where(share > _SURE, "ball", np.where(share < 1.0 - _SURE, "plate", "either"))
-        explained = square.min(axis=1) <= _MISFIT * free
+        inside = (weight * members[..., 5]).sum(axis=1) > 1.0 - _SURE
+        explained = (square.min(axis=1) <= _MISFIT * free) & inside
         kind = np.where(touched, np.where(explained, likely, "outside"), "none")
         mean = np.einsum("mk,mkc->mc", weight, members)
         away = members - mean[:, None]
