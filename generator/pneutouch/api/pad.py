@@ -16,7 +16,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError
 from pneutouch.mechanics.touch.cell import TABLE_ERROR
 from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
-from pneutouch.mechanics.touch.pad_reader import PadReader
+from pneutouch.mechanics.touch.pad_reader import PadReader, find_fault
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.load import load_pad as resolved
@@ -126,6 +126,16 @@ class PadTouch(Shown):
             used = ~np.isin(np.arange(1, count + 1), numbers)
             self._readers[key] = PadReader(self._model, noise_kPa * KPA, model_error, used)
         return PadEstimate(*self._readers[key].read(KPA * rises_kPa))
+
+    def fault(
+        self, pressure_rises_kPa: ArrayLike, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0
+    ) -> tuple[str, tuple[int, ...]]:
+        """The fault that explains why readings (m, n) of many contacts are ``outside``: ``lost`` or ``swapped``, with
+        the numbers of the cells from 1; ``none``, or ``unknown``. Takes about half a minute for seven cells."""
+        rises_kPa = np.atleast_2d(np.asarray(pressure_rises_kPa, dtype=float))
+        self.read(rises_kPa[:1], noise_kPa, (), model_error)
+        found = find_fault(self._readers[noise_kPa, model_error], KPA * rises_kPa)
+        return found.kind, tuple(k + 1 for k in found.cells)
 
     def _head(self) -> str:
         return f"pad of {len(self._model.places)} cells at {self.driving_pressure_kPa:g} kPa, to {self.depth_mm:.3g} mm"

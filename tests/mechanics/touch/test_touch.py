@@ -11,7 +11,7 @@ from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.touch import cell as cells
 from pneutouch.mechanics.touch.cell import TABLE_ERROR, cell_table, greatest_lean
 from pneutouch.mechanics.touch.forward import PadModel
-from pneutouch.mechanics.touch.pad_reader import PadReader, answer_of, random_objects
+from pneutouch.mechanics.touch.pad_reader import PadReader, answer_of, find_fault, random_objects
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 
@@ -145,6 +145,17 @@ def test_a_lost_cell_is_left_out(pad):
     assert (PadReader(pad, NOISE, 1e-4).read(rise[touched]).kind == "outside").mean() > 0.7
     reading = PadReader(pad, NOISE, 1e-4, used).read(rise)
     assert np.median(np.abs(reading.force / answer.force - 1.0)) < 0.01
+
+
+@pytest.mark.slow
+def test_a_lost_cell_and_swapped_channels_are_found_from_the_readings(pad):
+    reader, (_, rise) = PadReader(pad, NOISE, 1e-4), readings(pad, "plate", 40, 7)
+    assert find_fault(reader, rise)[:2] == ("none", ())
+    leaking = rise.copy()
+    leaking[:, 4] = 0.0
+    assert find_fault(reader, leaking)[:2] == ("lost", (4,))
+    swapped = rise[:, [0, 1, 5, 3, 4, 2, 6]]
+    assert find_fault(reader, swapped)[:2] == ("swapped", (2, 5))
 
 
 def test_a_press_beyond_the_range_of_a_cell_is_outside(pad, coarse):

@@ -6,9 +6,11 @@ by a few steps of least squares until they explain it, and then stand for all th
 computation with adjustment, Beaumont et al. 2002, doi 10.1093/genetics/162.4.2025, by randomised maximum likelihood).
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from itertools import combinations
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -34,6 +36,8 @@ _FEWEST, _HEATINGS = 8, 20
 """Number of members that count at least, and of doublings of the cost at which the others begin to count."""
 _SURE = 0.95
 """Probability from which a kind of object is named."""
+_JUDGED, _MENDED = 20, 0.8
+"""Number of readings by which a fault is looked for, and the share of them that it has to explain."""
 _TOUCHED = 4.0
 """Rise in standard deviations of the gauge from which a cell counts as touched."""
 
@@ -69,6 +73,13 @@ class PadReader:
         rise = np.atleast_2d(rise)
         parts = [self._batch(rise[k : k + _BATCH]) for k in range(0, len(rise), _BATCH)]
         return PadReading(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
+    def without(self, cells: Sequence[int]) -> "PadReader":
+        """The reader with cells, by their numbers from 0, left out too; it shares the random contacts."""
+        used = np.isin(np.arange(len(self.model.places)), np.setdiff1d(self.cells, cells))
+        other = replace(self, used=used)
+        other.__dict__["_known"] = self._known
+        return other
 
     @cached_property
     def cells(self) -> Indices:
@@ -179,6 +190,41 @@ class PadReader:
         slopes = np.moveaxis((ends[:, 0] - ends[:, 1]) / (2.0 * steps[:, None, None]), 0, -1)
         known = np.broadcast_to(np.diag(1.0 / spread), (len(at), count, count))
         return np.concatenate([slopes / deviation[:, None, None], known], axis=1)
+
+
+class PadFault(NamedTuple):
+    """A fault that explains readings which no object explains: cells ``lost`` or ``swapped``, by their numbers from 0,
+    and the share of the readings that are explained with it and as they are."""
+
+    kind: Literal["none", "lost", "swapped", "unknown"]
+    cells: tuple[int, ...]
+    explained: float
+    before: float
+
+
+def find_fault(reader: PadReader, rise: Array) -> PadFault:
+    """The lost cell or the two swapped channels that explain readings (m, n), of which the `_JUDGED` loudest count.
+
+    ``none`` where they are explained as they are, ``unknown`` where no single fault explains them."""
+    loud = rise[np.argsort(rise.sum(axis=1))[::-1][:_JUDGED]]
+    before = _explained(reader, loud)
+    if before >= _SURE:
+        return PadFault("none", (), before, before)
+    swaps = list(combinations(range(rise.shape[1]), 2))
+    found = []
+    for one, other in swaps:
+        turned = loud.copy()
+        turned[:, [one, other]] = loud[:, [other, one]]
+        found.append(PadFault("swapped", (one, other), _explained(reader, turned), before))
+    # A reading without one cell is explained more easily: of equals a swap is the fault.
+    lost = [PadFault("lost", (k,), _explained(reader.without([k]), loud), before) for k in range(rise.shape[1])]
+    best = max([*found, *lost], key=lambda fault: fault.explained)
+    return best if best.explained >= max(_MENDED, before + 0.2) else PadFault("unknown", (), before, before)
+
+
+def _explained(reader: PadReader, rise: Array) -> float:
+    """Share of readings that an object explains."""
+    return float((reader.read(rise).kind != "outside").mean())
 
 
 def _weights(cost: Array) -> Array:
