@@ -7,9 +7,11 @@ import pytest
 
 import pneutouch as pt
 from pneutouch.errors import InputError
+from pneutouch.evaluation import evaluate
 from pneutouch.mechanics.touch import cell as cells
 from pneutouch.output.new_pad import new_pad
 from pneutouch.units import KPA
+from pneutouch.workflows.pad import touch as touching
 from pneutouch.workflows.pad.load import load_pad as resolved
 
 
@@ -19,6 +21,7 @@ def touch(tmp_path_factory):
     home = tmp_path_factory.mktemp("pads")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PNEUTOUCH_HOME", str(home))
+        patch.setenv("XDG_CACHE_HOME", str(home))
         for name, value in (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6)):
             patch.setattr(cells, name, value)
         new_pad("tip", home / "designs", "row:3", 9.0)
@@ -31,6 +34,25 @@ def test_pressures_forces_and_places_are_those_of_the_mechanics(touch):
     assert np.allclose(found.pressure_rises_kPa * KPA, inner.rise) and np.array_equal(found.forces_N, inner.forces)
     assert np.allclose(found.force_N, found.forces_N.sum(axis=1)) and found.inside.all()
     assert touch.driving_pressure_kPa == pytest.approx(12.0) and touch.ball_radii_mm[0] < 8.0 < touch.ball_radii_mm[1]
+
+
+def test_a_kept_table_answers_alike_and_a_damaged_one_is_made_again(touch, tmp_path, monkeypatch):
+    table = touch._model.table
+    again = cells.CellTable.of(table.arrays())
+    assert np.array_equal(again.balls.values, table.balls.values) and again.apex == table.apex
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    sensor = evaluate("paper-dome").sensor
+    made = []
+    monkeypatch.setattr(touching, "cell_table", lambda *given: made.append(given) or table)
+    for _ in range(2):
+        touching._kept(sensor, 0.012, lambda done, total: None)
+    (kept,) = (tmp_path / "pneutouch" / "tables").glob("pad-*.npz")
+    assert len(made) == 1
+    kept.write_bytes(kept.read_bytes()[:100])
+    assert touching._kept(sensor, 0.012, lambda done, total: None) is table
+    assert len(made) == 2
+    touching._kept(sensor, 0.013, lambda done, total: None)
+    assert len(made) == 3
 
 
 def test_a_plate_is_read_as_the_plate_it_is(touch):

@@ -6,7 +6,7 @@
 import hashlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -190,10 +190,10 @@ def cache_folder() -> Path:
 
 
 @cache
-def fingerprint() -> str:
-    """Fingerprint of the program's solid and shapes: of the files that make them."""
+def fingerprint(*more: str) -> str:
+    """Fingerprint of the program's solid and shapes: of the files that make them, and of ``more`` files or folders."""
     package, digest = Path(__file__).parents[2], hashlib.sha256()
-    for name in _SOURCES:
+    for name in (*_SOURCES, *more):
         place = package / name
         for path in sorted(place.glob("*.py")) if place.is_dir() else [place]:
             digest.update(path.read_bytes())
@@ -281,15 +281,20 @@ def make(sensor: Sensor, greatest_pressure: float, progress: Progress = lambda d
 
 def store(table: LocalTable) -> None:
     """Write a table to its file. Raises InputError if that is impossible."""
-    part = table.path.with_suffix(f".{os.getpid()}.part")
+    held: dict[str, Any] = {**table.atlas.tables, "recipe": table.atlas.local.text(), "errors": table.errors}
+    store_arrays(table.path, held)
+
+
+def store_arrays(path: Path, held: Mapping[str, Any]) -> None:
+    """Write arrays by name to a file of the cache. Raises InputError if that is impossible."""
+    part = path.with_suffix(f".{os.getpid()}.part")
     try:
-        table.path.parent.mkdir(parents=True, exist_ok=True)
-        held: dict[str, Any] = {**table.atlas.tables, "recipe": table.atlas.local.text(), "errors": table.errors}
+        path.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as file:
             np.savez_compressed(file, **held)
-        part.replace(table.path)
+        part.replace(path)
     except OSError as error:
-        raise InputError(f"the table cannot be stored: {error.strerror}", file=table.path) from error
+        raise InputError(f"the table cannot be stored: {error.strerror}", file=path) from error
 
 
 def measured(atlas: LocalAtlas, sensor: Sensor, greatest_pressure: float, count: int = _HELD_OUT) -> Array:

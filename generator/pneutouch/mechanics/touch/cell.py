@@ -4,7 +4,7 @@ The table of contact anywhere gives forces over readings of the central plate; c
 coupled by its height, so that here forces and pressure are functions of the travel. ``harmonic`` makes every press.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -52,6 +52,11 @@ class CellAnswer(NamedTuple):
     inside: Flags
 
 
+_NUMBERS = ("radius", "outer", "depth", "apex", "cavity", "driving_pressure")
+_KINDS, _AXES, _PARTS = ("balls", "plates"), ("rows", "columns"), ("values", "first", "reach")
+"""Names of the numbers and of the arrays of a table."""
+
+
 @dataclass(frozen=True)
 class _Nodes:
     """Curves of presses at nodes: ``values`` (a, b, `_POINTS`, 4) at equal steps to ``depth``, sideways force and
@@ -79,6 +84,27 @@ class CellTable:
     driving_pressure: float
     balls: _Nodes
     plates: _Nodes
+
+    def arrays(self) -> dict[str, Array]:
+        """The table as arrays by name."""
+        numbers = [getattr(self, name) for name in _NUMBERS]
+        parts = [(kind, part, getattr(getattr(self, kind), part)) for kind in _KINDS for part in _PARTS]
+        nodes = {f"{kind}_{axis}": getattr(getattr(self, kind), axis).nodes for kind in _KINDS for axis in _AXES}
+        return {"numbers": np.array(numbers), **nodes, **{f"{kind}_{part}": values for kind, part, values in parts}}
+
+    @staticmethod
+    def of(arrays: Mapping[str, Array]) -> "CellTable":
+        """The table of `arrays`. Raises KeyError if one is missing, ValueError for another number of numbers."""
+        kinds = [
+            _Nodes(
+                NodeAxis(arrays[f"{kind}_rows"]),
+                NodeAxis(arrays[f"{kind}_columns"]),
+                *(arrays[f"{kind}_{part}"] for part in _PARTS),
+            )
+            for kind in _KINDS
+        ]
+        radius, outer, depth, apex, cavity, pressure = map(float, arrays["numbers"])
+        return CellTable(radius, outer, depth, apex, cavity, pressure, *kinds)
 
     def under_ball(self, ball_radius: Array, offset: Array, height: Array) -> CellAnswer:
         """Under balls of radii from the first to the last of `BALLS`, their axes at distances ``offset`` from that of

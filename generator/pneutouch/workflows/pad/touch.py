@@ -1,11 +1,16 @@
 """The forward model of a pad at one driving pressure, from the design of its cell."""
 
+import hashlib
 from collections.abc import Callable
+from contextlib import suppress
+from zipfile import BadZipFile
 
 import numpy as np
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.touch.cell import cell_table
+from pneutouch.mechanics.models.local import cache_folder, fingerprint, store_arrays
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.touch.cell import CellTable, cell_table
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA, ML
@@ -15,7 +20,8 @@ from pneutouch.workflows.pad.load import ResolvedPad
 def pad_model(
     pad: ResolvedPad, driving_pressure_kPa: float, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> PadModel:
-    """Tabulate the cell of a pad at a driving pressure, about half a minute of processor time.
+    """Tabulate the cell of a pad at a driving pressure, about half a minute of processor time at the first time; the
+    table is then kept among those of `pneutouch table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a shape
     other than a hemisphere, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
@@ -28,7 +34,20 @@ def pad_model(
     if driving_pressure_kPa < 0.0:
         remedy = "give 0 or more"
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
-    table = cell_table(cell.sensor, driving_pressure_kPa * KPA, progress)
+    table = _kept(cell.sensor, driving_pressure_kPa * KPA, progress)
     behind = ML * np.array(pad.dead_volumes_mL)
     gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
     return PadModel(np.array(pad.layout.places), table, gain)
+
+
+def _kept(sensor: Sensor, pressure: float, progress: Callable[[int, int], None]) -> CellTable:
+    """The table of a cell from the cache, else computed and kept there; one that cannot be read is made again."""
+    made_by = fingerprint("mechanics/harmonic", "mechanics/models/harmonic.py", "mechanics/touch/cell.py")
+    key = hashlib.sha256(repr((sensor, pressure, made_by)).encode()).hexdigest()[:16]
+    path = cache_folder() / f"pad-{key}.npz"
+    unreadable = suppress(OSError, ValueError, KeyError, BadZipFile)
+    with unreadable, path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+        return CellTable.of({name: file[name] for name in file.files})
+    table = cell_table(sensor, pressure, progress)
+    store_arrays(path, table.arrays())
+    return table
