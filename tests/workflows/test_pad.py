@@ -38,6 +38,14 @@ def test_a_new_pad_breaks_no_rule(home, process):
     assert not [one for one in pad_findings(pad) if one.severity == "error"]
 
 
+@pytest.mark.parametrize("shape", ["cap", "disc", "torus"])
+def test_a_new_cell_of_another_shape_has_sizes_for_the_pitch(home, shape):
+    pad = started(home, "row:3", 24.0, shape=shape)
+    assert pad.scene.design.membrane.shape == shape
+    assert 2.0 * pad.layout.cell.outer_radius < 24.0
+    assert not [one for one in pad_findings(pad) if one.severity == "error" and one.rule != "driving"]
+
+
 @pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(layout=st.sampled_from(["ring:4", "row:3", "hex:7", "grid:2x3"]), pitch=st.floats(6.0, 30.0))

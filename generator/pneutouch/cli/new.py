@@ -41,8 +41,14 @@ def new(
     elif name is not None and pad is not None:
         from pneutouch.output.new_pad import new_pad
 
-        of_cell = drawn(changes(set_), shape, drawing)
-        path, cell, note = new_pad(name, design_folder(out), pad, pitch, process, material, of_cell)
+        if drawing is not None:
+            raise InputError(
+                "is of one sensor",
+                key="drawing",
+                value=str(drawing),
+                remedy="draw the cell first and name it in the pad",
+            )
+        path, cell, note = new_pad(name, design_folder(out), pad, pitch, process, material, changes(set_), shape)
         echo(str(cell))
         made = NewFile(path, ("check", name if out is None else str(path)))
     elif pitch is not None:

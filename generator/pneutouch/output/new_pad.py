@@ -7,7 +7,15 @@ from typing import Any
 
 from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
-from pneutouch.output.new import PRINTED_PORT, check_free, new_design, process_values, usual_pressures_kPa, write_design
+from pneutouch.output.new import (
+    PRINTED_PORT,
+    check_free,
+    drawn,
+    new_design,
+    process_values,
+    usual_pressures_kPa,
+    write_design,
+)
 from pneutouch.parts import assemble
 from pneutouch.parts.pad import lay_out_pad
 from pneutouch.spec.design import DesignFile
@@ -32,10 +40,12 @@ def new_pad(
     process: str | None = None,
     material: str | None = None,
     changes: Changes | None = None,
+    shape: str | None = None,
 ) -> tuple[Path, Path, str | None]:
     """Write ``folder/pads/name.toml`` and the design of its cell, ``folder/name-cell.toml``; never over a file.
 
-    Returns both paths and the note on the profile of `new_design`. ``changes`` are of the cell. Raises InputError."""
+    Returns both paths and the note on the profile of `new_design`. ``changes`` and ``shape`` are of the cell. Raises
+    InputError."""
     table: dict[str, Any] = {"cell": f"{name}-cell", "layout": layout}
     table |= {} if pitch_mm is None else {"pitch_mm": pitch_mm}
     file = validate(PadFile, {"pad": table}, name)
@@ -48,10 +58,10 @@ def new_pad(
         remedy = "take polyjet, filament or resin"
         raise InputError("the membrane of a pad is printed", key="process", value=process, remedy=remedy)
     given, pitch = changes or {}, file.pad.pitch_mm
-    own = _cell(file.pad, values, printer, given, library)
+    own = _cell(file.pad, values, printer, given, library, shape)
     if own is None:
         wider = (file.pad.model_copy(update={"pitch_mm": 0.5 * half}) for half in range(math.ceil(2 * pitch), 201))
-        least = next((one.pitch_mm for one in wider if _cell(one, values, printer, given, library)), None)
+        least = next((one.pitch_mm for one in wider if _cell(one, values, printer, given, library, shape)), None)
         remedy = "give another process" if least is None else f"give at least {least:g} mm, or another process"
         raise InputError("too small for a cell of this printer", key="pitch", value=pitch, remedy=remedy)
     cell, note = new_design(f"{name}-cell", folder, process, material, own)
@@ -61,7 +71,7 @@ def new_pad(
 
 
 def _cell(
-    pad: PadTable, values: dict[str, Any], printer: Printer, changes: Changes, library: Library
+    pad: PadTable, values: dict[str, Any], printer: Printer, changes: Changes, library: Library, shape: str | None
 ) -> dict[str, Any] | None:
     """Changes of the values of a new design that make it a cell of a pad, with the first of `_PARTS` for which there is
     space on the manifold and on a connector of its own; None if there is none."""
@@ -73,10 +83,16 @@ def _cell(
     if printer.mode_for(rigid) is not None:
         # A filament printer's spigots would be as coarse as the channels in them.
         own |= {"connector.material": "VeroClear", "print.connector_profile": values["print"]["profile"]}
-    own |= changes
+    own |= drawn({**sizes, **changes}, shape, None) or {}
     source = DesignSource("cell", override(values, own, DesignFile), "cell")
     soft: Material = library.load("materials", values["membrane"]["material"])
-    usual = source.changed({})
+    try:
+        usual = source.changed({})
+    except InputError:
+        if shape is None:
+            raise
+        # Sizes of a shape in proportion to the radius have no space for the printer's wall.
+        return None
     pressures_kPa = usual_pressures_kPa(soft, usual) or usual.pneumatics.driving_pressures_kPa
     own.setdefault("pneumatics.driving_pressures_kPa", pressures_kPa)
     for seat, port in _PARTS[: None if printer.process == "polyjet" else 2]:
