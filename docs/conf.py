@@ -34,6 +34,7 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:class", "Axes|DataFrame|Path"),
     ("py:class", "CalibrationOutcome|CompareResult|DrivingRecord|Evaluation|Rating|SelectedRecord|StateRecord"),
+    ("py:class", "PadModel|ResolvedPad"),
     ("py:.*", r"(collections|matplotlib|numpy|os|pandas|pathlib|typing|xarray)\..*"),
     ("py:.*", r"pneutouch\.(arrays|body|catalogue|evaluation|mechanics|parts|printability|results|workflows)\..*"),
 ]
