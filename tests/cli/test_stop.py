@@ -247,3 +247,25 @@ def test_a_stop_waits_until_a_compiled_library_is_loaded():
     # Its module makes enumerations in Python while it is loaded.
     done = subprocess.run([sys.executable, "-c", _LOADING], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "stopped with 1.0\n"), done.stderr
+
+
+_ENDING = """
+import os, signal, threading
+from pneutouch.cli.stop import stop_signals
+
+def wake():
+    raise OSError("Bad file descriptor")
+
+threading._register_atexit(wake)
+with stop_signals(after=signal.SIG_IGN) as stop:
+    try:
+        {end}
+    except KeyboardInterrupt:
+        pass
+"""
+
+
+@pytest.mark.parametrize(("end", "said"), [("os.kill(os.getpid(), signal.SIGTERM)", False), ("pass", True)])
+def test_what_a_pool_cannot_do_at_exit_is_unsaid_after_a_stop_alone(end, said):
+    done = subprocess.run([sys.executable, "-c", _ENDING.format(end=end)], capture_output=True, text=True, check=False)
+    assert ("Traceback" in done.stderr) is said

@@ -63,7 +63,8 @@ def _loads_library(frame: FrameType | None) -> bool:
 def stop_signals(after: Any = None) -> Iterator[StopSignals]:
     """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored.
 
-    ``after`` handles them from then on; None: the handlers that were there before.
+    ``after`` handles them from then on; None: the handlers that were there before. With it, the process is to end: what
+    a pool of processes that was cut short cannot do at its exit (CPython's wakes a closed pipe) stays unsaid.
     """
     stop = StopSignals()
     numbers = [number for number in (*STOPS, signal.SIGALRM) if signal.getsignal(number) is not signal.SIG_IGN]
@@ -75,7 +76,7 @@ def stop_signals(after: Any = None) -> Iterator[StopSignals]:
         stop.end()
         for number, handler in before.items():
             signal.signal(number, after or handler)
-        sys.unraisablehook = hook
+        sys.unraisablehook = hook if after is None or stop.received is None else stop.unraisable
 
 
 def stopped() -> StopSignals | None:
