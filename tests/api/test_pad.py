@@ -45,13 +45,13 @@ def test_a_kept_table_answers_alike_and_a_damaged_one_is_made_again(touch, tmp_p
     made = []
     monkeypatch.setattr(touching, "cell_table", lambda *given: made.append(given) or table)
     for _ in range(2):
-        touching._kept(sensor, 0.012, lambda done, total: None)
+        touching._kept(sensor, 0.012)
     (kept,) = (tmp_path / "pneutouch" / "tables").glob("pad-*.npz")
     assert len(made) == 1
     kept.write_bytes(kept.read_bytes()[:100])
-    assert touching._kept(sensor, 0.012, lambda done, total: None) is table
+    assert touching._kept(sensor, 0.012) is table
     assert len(made) == 2
-    touching._kept(sensor, 0.013, lambda done, total: None)
+    touching._kept(sensor, 0.013)
     assert len(made) == 3
 
 

@@ -4,7 +4,7 @@ The table of contact anywhere gives forces over readings of the central plate; c
 coupled by its height, so that here forces and pressure are functions of the travel. ``harmonic`` makes every press.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -146,9 +146,7 @@ def greatest_lean(depth: float, outer: float, ball_radius: Array) -> Array:
     return np.asarray(np.sqrt(1.0 - (1.0 - depth / (outer + ball_radius)) ** 2))
 
 
-def cell_table(
-    sensor: Sensor, driving_pressure: float, progress: Callable[[int, int], None] = lambda done, total: None
-) -> CellTable:
+def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
     """The table of a cell at one driving pressure (MPa), by 24 presses of ``harmonic``, about 30 s of processor time.
 
     The depth is that of the sensor's test, or where the range of its central plate ends. Raises BeyondLimitError, and
@@ -172,7 +170,6 @@ def cell_table(
             scene = plain.replace(body=ball(size), offset=float(one * (outer + size)))
             to = min(max(depth - float(nearer), _LEAST * depth), _LOWEST * (free.outer_apex - float(down)))
             balls.append(_pressed(scene, probe, free, depth, to))
-            progress(len(balls), len(BALLS) * len(SHARES))
     return CellTable(
         radius,
         outer,

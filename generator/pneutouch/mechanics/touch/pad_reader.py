@@ -21,6 +21,8 @@ from pneutouch.mechanics.touch.forward import ObjectKind, PadAnswer, PadModel
 KINDS: tuple[ObjectKind, ...] = ("ball", "plate")
 _KNOWN = 20_000
 """Number of random contacts of each kind."""
+_SEED = 0
+"""Seed of the random contacts and of the noise of their copies: the same readings give the same answer."""
 _MEMBERS = 96
 """Number of them that stand for a reading."""
 _ITERATIONS = 12
@@ -66,7 +68,6 @@ class PadReader:
     noise: float
     model_error: float = TABLE_ERROR / 3.0
     used: Flags | None = None
-    seed: int = 0
 
     def read(self, rise: Array) -> PadReading:
         """Read pressure rises (m, n), MPa."""
@@ -92,7 +93,7 @@ class PadReader:
         deviation = np.hypot(self.noise, self.model_error * rise.max(axis=1))
         touched = rise.max(axis=1) > _TOUCHED * self.noise
         nearest = self._nearest(rise)
-        random = np.random.default_rng(self.seed)
+        random = np.random.default_rng(_SEED)
         noisy = rise[:, None] + deviation[:, None, None] * random.standard_normal((count, _MEMBERS, rise.shape[1]))
         out = np.full((count, _MEMBERS, 6), np.nan)
         balls = nearest < _KNOWN
@@ -150,7 +151,7 @@ class PadReader:
     @cached_property
     def _known(self) -> dict[ObjectKind, tuple[Array, Array]]:
         """Parameters (`_KNOWN`, k) and rises (`_KNOWN`, n) of random contacts of each kind."""
-        random = np.random.default_rng(self.seed)
+        random = np.random.default_rng(_SEED)
         out: dict[ObjectKind, tuple[Array, Array]] = {}
         for kind in KINDS:
             drawn = random_objects(self.model, kind, _KNOWN, random)

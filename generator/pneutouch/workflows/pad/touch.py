@@ -1,7 +1,6 @@
 """The forward model of a pad at one driving pressure, from the design of its cell."""
 
 import hashlib
-from collections.abc import Callable
 from contextlib import suppress
 from zipfile import BadZipFile
 
@@ -17,9 +16,7 @@ from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.load import ResolvedPad
 
 
-def pad_model(
-    pad: ResolvedPad, driving_pressure_kPa: float, progress: Callable[[int, int], None] = lambda done, total: None
-) -> PadModel:
+def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
     """Tabulate the cell of a pad at a driving pressure, about half a minute of processor time at the first time; the
     table is then kept among those of `pneutouch table`.
 
@@ -34,13 +31,13 @@ def pad_model(
     if driving_pressure_kPa < 0.0:
         remedy = "give 0 or more"
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
-    table = _kept(cell.sensor, driving_pressure_kPa * KPA, progress)
+    table = _kept(cell.sensor, driving_pressure_kPa * KPA)
     behind = ML * np.array(pad.dead_volumes_mL)
     gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
     return PadModel(np.array(pad.layout.places), table, gain)
 
 
-def _kept(sensor: Sensor, pressure: float, progress: Callable[[int, int], None]) -> CellTable:
+def _kept(sensor: Sensor, pressure: float) -> CellTable:
     """The table of a cell from the cache, else computed and kept there; one that cannot be read is made again."""
     made_by = fingerprint("mechanics/harmonic", "mechanics/models/harmonic.py", "mechanics/touch/cell.py")
     key = hashlib.sha256(repr((sensor, pressure, made_by)).encode()).hexdigest()[:16]
@@ -48,6 +45,6 @@ def _kept(sensor: Sensor, pressure: float, progress: Callable[[int, int], None])
     unreadable = suppress(OSError, ValueError, KeyError, BadZipFile)
     with unreadable, path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
         return CellTable.of({name: file[name] for name in file.files})
-    table = cell_table(sensor, pressure, progress)
+    table = cell_table(sensor, pressure)
     store_arrays(path, table.arrays())
     return table
