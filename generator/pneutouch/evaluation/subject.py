@@ -121,7 +121,7 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
         findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
         findings += check_mould(assembly.mould)
     reasons = assembly.scene.design.accepted.reasons
-    return sorted((_accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
+    return sorted((accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
 
 
 _NAMED = 2
@@ -192,7 +192,7 @@ def _others(scene: ResolvedDesign, key: str) -> Iterator[tuple[str, ResolvedDesi
         yield name, replace(scene, design=design, **{_FIELDS[kind]: parts[name]}, **more)
 
 
-def _accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:
+def accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:
     """A warning on a rule that has a reason, turned into a note with that reason; any other finding unchanged."""
     reason = reasons.get(finding.rule)
     if reason is None or finding.severity != "warning":

@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from pneutouch.evaluation.subject import glued_seat
-from pneutouch.mechanics.models.solid import solid_states
+from pneutouch.evaluation.subject import accepted, glued_seat
 from pneutouch.parts.pad.solids import channel_length
 from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.subject import PrintItem, PrintSubject
@@ -36,13 +34,7 @@ def pad_findings(pad: ResolvedPad) -> list[Finding]:
     )
     reasons = pad.scene.design.accepted.reasons
     found = [*_channels_once(pad, check(subject_of(pad), context)), *_neighbours(pad)]
-    kept = (
-        replace(one, severity="note", message=f"{one.message} (accepted: {reasons[one.rule]})")
-        if one.severity == "warning" and one.rule in reasons
-        else one
-        for one in found
-    )
-    return sorted(kept, key=lambda one: one.rank)
+    return sorted((accepted(one, reasons) for one in found), key=lambda one: one.rank)
 
 
 def subject_of(pad: ResolvedPad) -> PrintSubject:
@@ -81,9 +73,8 @@ def _channels_once(pad: ResolvedPad, found: list[Finding]) -> Iterator[Finding]:
 
 def widest(pad: ResolvedPad) -> float:
     """Greatest radius in mm of a pressed dome, at the end of its range, over the driving pressures of its design."""
-    pressures = np.array([state.driving_pressure for state in pad.worst.prediction.states])
     radii = [pad.layout.cell.outer_radius]
-    for state in solid_states(pad.worst.sensor.replace(waves=0), pressures):
+    for state in pad.worst.prediction.states:
         if state.face is not None:
             face = state.face()
             rows = np.arange(0.0, face.edges + 0.5 / _ROWS, 1.0 / _ROWS)

@@ -58,10 +58,7 @@ class ResolvedPad:
 
     def machine(self, name: str) -> tuple[Printer, Mode]:
         """Printer of a body, and its mode."""
-        scene = self.scene
-        if name == "membrane":
-            return scene.printer, scene.membrane_mode
-        return scene.connector_printer, scene.connector_mode
+        return Assembly(self.scene, self.layout.cell).machine(name)
 
     def solid(self, name: str) -> Solid:
         """The solid of this name: membrane or manifold."""
