@@ -126,6 +126,19 @@ def test_channels_of_any_pattern_keep_apart(places, pitch):
     assert reach <= pad.cell.groove_inner - scene.connector_printer.smallest.wall("rigid").recommended + 1e-9
 
 
+def test_a_pad_is_the_same_wherever_its_cells_are_counted_from():
+    scene = load_scene("paper-dome", {"connector.port": "push-in-4", "membrane.inner_radius_mm": 6.0})
+    made = []
+    for u, v in ((0.0, 0.0), (90.0, -40.0)):
+        points = [[u + x, v + y] for x, y in ((0.0, 0.0), (16.0, 0.0), (8.0, 15.0))]
+        made.append(lay_out_pad(scene, PadTable(cell="paper-dome", layout="points", points_mm=points), "here"))
+    here, there = ([solid.mesh(0.05) for solid in pad_solids(scene, one)] for one in made)
+    assert np.allclose(np.array(made[1].ports) - np.array(made[0].ports), [90.0, -40.0])
+    for one, other in zip(here, there, strict=True):
+        assert other.volume == pytest.approx(one.volume, rel=1e-6)
+        assert np.allclose(other.bounds - one.bounds, [90.0, -40.0, 0.0], atol=1e-6)
+
+
 @pytest.mark.parametrize("count", [2, 3, 4, 7, 9])
 def test_a_ring_is_no_closer_than_its_pitch(count):
     places = PadTable(cell="c", layout=f"ring:{count}", pitch_mm=5.0).places

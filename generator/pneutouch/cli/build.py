@@ -98,7 +98,9 @@ def check(
 ) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
     if (kind := _drawn_kind(design)) is not None:
-        cli.refuse_flags(context, _VOXEL_FLAGS, f"a {kind}, which is drawn alone", design)
+        cli.refuse_flags(
+            context, {**_VOXEL_FLAGS, "calibration": "--calibration"}, f"a {kind}, which is drawn alone", design
+        )
         curves: tuple[Any, ...] = ()
         with bar(f"checking the {kind}"):
             findings = _CHECKS[kind]()(design, cli.changes(set_, calibration), deep=deep)

@@ -31,10 +31,11 @@ _FOOT = 0.5
 
 @dataclass(frozen=True, slots=True)
 class PadLayout:
-    """Sizes of a pad, mm; heights as in `Layout` of the ``cell``. ``ports``: places enlarged by ``fan``.
+    """Sizes of a pad, mm; heights as in `Layout` of the ``cell``. ``ports`` are the places enlarged by ``fan``.
 
     ``meeting`` is the height at which the channels, of radius ``channel``, meet the passages of the ports, ``low`` the
-    manifold's underside. ``plate`` is the radius of a round plate with screw holes, 0 without one.
+    manifold's underside. ``plate`` and ``bolts`` are the radii of a round plate and of its circle of screw holes, both
+    about the centre and 0 without one.
     """
 
     cell: Layout
@@ -47,9 +48,19 @@ class PadLayout:
     bolts: float = 0.0
 
     @property
+    def centre(self) -> Point:
+        """Middle of the extent of the cells."""
+        return middle_of(self.places)
+
+    def spread(self, share: float) -> tuple[Point, ...]:
+        """The places enlarged about the centre by a share."""
+        u, v = self.centre
+        return tuple((u + share * (x - u), v + share * (y - v)) for x, y in self.places)
+
+    @property
     def ports(self) -> tuple[Point, ...]:
         """Axes of the ports in the order of the cells."""
-        return tuple((self.fan * x, self.fan * y) for x, y in self.places)
+        return self.spread(self.fan)
 
     @property
     def middle(self) -> float:
@@ -58,8 +69,8 @@ class PadLayout:
 
     def lean(self, cell: int) -> Point:
         """Shift (x, y) of the channel of a cell, by the way down."""
-        share = (self.fan - 1.0) / (self.middle - self.meeting)
-        return share * self.places[cell][0], share * self.places[cell][1]
+        (x, y), (u, v), down = self.places[cell], self.ports[cell], self.middle - self.meeting
+        return (u - x) / down, (v - y) / down
 
     @property
     def membrane_outline(self) -> tuple[Segment, ...]:
@@ -78,8 +89,8 @@ class PadLayout:
 
     @property
     def farthest(self) -> float:
-        """Distance of the farthest cell from the middle."""
-        return max(math.hypot(*at) for at in self.places)
+        """Distance of the farthest cell from the centre."""
+        return max(math.dist(at, self.centre) for at in self.places)
 
 
 def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str) -> PadLayout:
@@ -92,14 +103,13 @@ def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str) -> PadLayout
         raise _closer(table, where, pitch, f"the domes need {least:.4g} mm from axis to axis", least)
     tube = 0.5 * scene.tube.outer_diameter
     fan = max(1.0, (2.0 * max(cell.port.reach, tube) + _BETWEEN_PORTS) / pitch)
-    farthest = max(math.hypot(*at) for at in places)
+    farthest = max(math.dist(at, middle_of(places)) for at in places)
+    wall, spigot = scene.connector_printer.smallest.wall("rigid").recommended, cell.floor - cell.plate_high
     found = _channel(scene, cell, leans=fan > 1.0)
     if found is None:
-        wall = scene.connector_printer.smallest.wall("rigid").recommended
         problem = f"a leaning channel leaves no wall of {wall:g} mm in a spigot {2 * cell.groove_inner:.3g} mm wide"
         raise _closer(table, where, pitch, problem, fan * pitch)
     channel, slope = found
-    wall, spigot = scene.connector_printer.smallest.wall("rigid").recommended, cell.floor - cell.plate_high
     inside = max(-cell.port.hollow[-1][1], 0.0)
     foot = inside + _FOOT + 2.0 * channel
     fans = (fan - 1.0) * farthest / slope - 0.5 * spigot + foot if fan > 1.0 else 0.0
@@ -166,10 +176,15 @@ def _with_plate(scene: ResolvedDesign, pad: PadLayout) -> PadLayout:
     least = scene.connector_printer.smallest.wall("rigid").recommended
     hole = 0.5 * (mount.hole_diameter + scene.hole_undersize)
     head = max(0.5 * mount.head_diameter + 0.5, hole + least)
-    around = max(math.hypot(*point) for piece in pad.outline for point in (piece.start, piece.end))
-    arcs = [math.hypot(*piece.centre) + piece.radius for piece in pad.outline if isinstance(piece, Arc)]
-    bolts = 0.5 * math.ceil(2.0 * (max(around, *arcs) + head))
+    around = max(math.dist(piece.centre, pad.centre) + piece.radius for piece in pad.outline if isinstance(piece, Arc))
+    bolts = 0.5 * math.ceil(2.0 * (around + head))
     return replace(pad, plate=bolts + head, bolts=bolts)
+
+
+def middle_of(places: Sequence[Point]) -> Point:
+    """Middle of the extent of places along x and y."""
+    (low, high), (near, far) = ((min(row), max(row)) for row in zip(*places, strict=True))
+    return 0.5 * (low + high), 0.5 * (near + far)
 
 
 def rounded_hull(places: Sequence[Point], reach: float) -> tuple[Segment, ...]:

@@ -51,7 +51,7 @@ def _manifold(scene: ResolvedDesign, pad: PadLayout) -> Solid:
     if isinstance(mount, BoltCircle):
         thick = min(mount.plate_thickness, high - pad.low)
         disc = cylinder(pad.plate, pad.low, pad.low + thick)
-        adds.insert(0, Feature(Turned(disc), (math.pi * pad.plate**2 - base.area()) * thick))
+        adds.insert(0, Feature(Turned(disc, Frame((*pad.centre, 0.0))), (math.pi * pad.plate**2 - base.area()) * thick))
         bores = _bolts(mount, scene.hole_undersize, pad, pad.low + thick)
     return Solid("manifold", "connector", scene.connector_material, base, bores, tuple(adds), tuple(cuts))
 
@@ -102,6 +102,9 @@ def _down(pad: PadLayout, at: Point) -> Frame:
 
 def _bolts(mount: BoltCircle, undersize: float, pad: PadLayout, high: float) -> tuple[Bore, ...]:
     """Through holes on the circle of the mount, the first half a spacing off the x axis."""
+    u, v = pad.centre
     turns = [2.0 * math.pi * (k + 0.5) / mount.count for k in range(mount.count)]
     radius = 0.5 * (mount.hole_diameter + undersize)
-    return tuple(Bore(pad.bolts * math.cos(turn), pad.bolts * math.sin(turn), radius, pad.low, high) for turn in turns)
+    return tuple(
+        Bore(u + pad.bolts * math.cos(turn), v + pad.bolts * math.sin(turn), radius, pad.low, high) for turn in turns
+    )

@@ -1,6 +1,6 @@
 """Build of a pad: 3MF, STL, GLB, STEP, drawing, print sheet, record and manifest, in one folder."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,12 +19,10 @@ from pneutouch.results.folder import BodyMesh
 from pneutouch.results.record import plain
 from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
-from pneutouch.workflows.build import job_files
+from pneutouch.workflows.build import StepReport, job_files
 from pneutouch.workflows.pad.findings import pad_findings, subject_of
 from pneutouch.workflows.pad.load import ResolvedPad, load_pad
 from pneutouch.workflows.pad.pad_sheet import drawing_svg, pad_record, sheet
-
-StepReport = Callable[[str], None]
 
 STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
 """Steps that a build reports, in order."""

@@ -58,7 +58,7 @@ def _channels_once(pad: ResolvedPad, found: list[Finding]) -> Iterator[Finding]:
         if one.rule == "cleaning" and one.body == "manifold" and one.where_mm is not None:
             x, y, z = one.where_mm
             share = 1.0 + (layout.fan - 1.0) * (layout.middle - z) / (layout.middle - layout.meeting)
-            away = min(math.hypot(x - share * u, y - share * v) for u, v in layout.places)
+            away = min(math.dist((x, y), axis) for axis in layout.spread(share))
             if layout.low - layout.cell.port.length <= z and away <= layout.channel + _NEAR:
                 inside.append(one)
                 continue

@@ -15,6 +15,7 @@ from pneutouch.parts.assembly import Assembly, print_offset
 from pneutouch.parts.layout import lay_out
 from pneutouch.parts.pad import PadLayout, lay_out_pad, pad_solids
 from pneutouch.parts.pad.solids import line_volume
+from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.pad import PadFile
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
@@ -126,7 +127,8 @@ def load_pad(name: str, changes: Changes | None = None, library: Library | None 
     if path is None:
         raise InputError("no such pad or file", key="pad", value=name, remedy="give the name or the path of a pad")
     own = {key: value for key, value in (changes or {}).items() if key.partition(".")[0] in ("pad", "document")}
-    of_cell = {key: value for key, value in (changes or {}).items() if key not in own}
+    # What a single sensor was calibrated to is not what is printed anew.
+    of_cell = {CALIBRATION: NO_CALIBRATION} | {key: one for key, one in (changes or {}).items() if key not in own}
     file: PadFile = validate(PadFile, override(read_toml(path), own, PadFile), str(path))
     try:
         source = DesignSource.of(file.pad.cell, library)

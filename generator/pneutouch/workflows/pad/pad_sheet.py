@@ -121,15 +121,17 @@ def drawing_svg(pad: ResolvedPad) -> bytes:
     layout = pad.layout
     with figure(_WIDTH, _HEIGHT) as page:
         front, rear, cut = page.subplots(1, 3)
-        reach = max(layout.plate, max(abs(at) for point in polygon(layout.outline, 0.05) for at in point)) + 1.0
+        around = max(math.dist(point, layout.centre) for point in polygon(layout.outline, 0.05))
+        reach = max(layout.plate, around) + 1.0
         _view(front, pad, reach, behind=False)
         _view(rear, pad, reach, behind=True)
         for body, solid in zip(pad.bodies, pad.solids, strict=True):
-            draw_loops(cut, mesh_outline(body), solid.role)
+            draw_loops(cut, mesh_outline(body, layout.centre[1]), solid.role)
         bounds = np.concatenate([body.bounds[:, 2] for body in pad.bodies])
         heights = (bounds.min() - 1.0, bounds.max() + 1.0)
-        cut.set(xlim=(-reach, reach), ylim=heights, aspect="equal", xlabel="x, mm", ylabel="z, mm")
-        cut.set_title("section at y = 0")
+        middle = layout.centre[0]
+        cut.set(xlim=(middle - reach, middle + reach), ylim=heights, aspect="equal", xlabel="x, mm", ylabel="z, mm")
+        cut.set_title(f"section at y = {layout.centre[1]:.3g} mm")
         cut.grid(visible=False)
         document = pad.file.document
         text = f"{document.title}, revision {document.revision}: {len(layout.places)} cells, {pad.file.pad.layout}"
@@ -144,7 +146,7 @@ def _view(ax: Axes, pad: ResolvedPad, reach: float, *, behind: bool) -> None:
         edge = np.array([*(loop := polygon(outline, 0.02)), loop[0]])
         ax.plot(side * edge[:, 0], edge[:, 1], color=INK, lw=0.7, ls=look)
     if layout.plate:
-        circle(ax, 0.0, 0.0, layout.plate)
+        circle(ax, side * layout.centre[0], layout.centre[1], layout.plate)
         for bore in pad.solids[1].bores:
             circle(ax, side * bore.x, bore.y, bore.radius)
     radius = layout.cell.port.root if behind else layout.cell.outer_radius
@@ -153,7 +155,8 @@ def _view(ax: Axes, pad: ResolvedPad, reach: float, *, behind: bool) -> None:
         if behind:
             circle(ax, side * x, y, layout.cell.port.hollow[0][0], lw=0.5)
         ax.text(side * x, y, str(number), ha="center", va="center", fontsize=7, **BOLD)
-    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="x, mm", ylabel="y, mm")
+    u, v = side * layout.centre[0], layout.centre[1]
+    ax.set(xlim=(u - reach, u + reach), ylim=(v - reach, v + reach), aspect="equal", xlabel="x, mm", ylabel="y, mm")
     ax.set_title("from behind: ports" if behind else "from the front: cells")
     if behind:
         ax.set_xlabel("-x, mm")
