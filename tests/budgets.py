@@ -123,9 +123,9 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 90_940, 70_000),
-    Budget("files of the package", package_files, 480, 450),
-    Budget("lines of benchmarks", benchmark_lines, 7_100, 6_500),
+    Budget("lines of the package", package_lines, 91_940, 70_000),
+    Budget("files of the package", package_files, 489, 450),
+    Budget("lines of benchmarks", benchmark_lines, 7_116, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),
     Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),
     Budget("lines in these", loaded_lines, 18_000, 18_000),

@@ -35,6 +35,7 @@ WRITTEN = {
     "truth.json": "truth",
     "specimen.json": "specimen-report",
     "pad.json": "pad-report",
+    "pad-figures.json": "pad-figures",
     "stack.json": "stack",
 }
 """Names of schemas by the file that holds such a document."""

@@ -14,6 +14,7 @@ from pneutouch.catalogue import KINDS, Library
 from pneutouch.catalogue.library import examples
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.coupon import read_results
+from pneutouch.spec.pad import PadCampaign
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.spec.tasks import TaskFile
@@ -47,6 +48,7 @@ READERS: dict[str, Callable[[Content], object]] = {
     "target": lambda content: validate(Target, content, "file"),
     "tray": lambda content: validate(Tray, content, "file"),
     "tasks": lambda content: validate(TaskFile, content, "file"),
+    "pad-campaign": lambda content: validate(PadCampaign, content, "file"),
     "campaign": lambda content: validate(Campaign, content, "file"),
     "coupons": _from_disk(read_results),
     "sweep": _from_disk(plan_of_file),
@@ -64,6 +66,21 @@ membrane.material = "FLX9950"
 contact = { object = "ball", ball_radius_mm = 6, friction = "inf" }
 """
 
+PAD_CAMPAIGN = {"pad": "tip", "driving_pressure_kPa": 12.0, "ball_radius_mm": 5.5, "runs": [{"file": "stage.csv"}]}
+
+PAD_CALIBRATION = {
+    "pad": "tip",
+    "places_mm": [[0.0, 0.0], [9.0, 0.0]],
+    "driving_pressure_kPa": 12.0,
+    "force_factor": 1.1,
+    "force_factor_uncertainty": 0.02,
+    "rise_factors": [1.0, 0.9],
+    "rise_factor_uncertainties": [0.02, 0.03],
+    "model_error": 0.01,
+    "readings": 60,
+    "digest": "0" * 64,
+}
+
 TASKS = '[[task]]\nname = "fruit"\nsensitivity_kPa_per_N = 2.5\n\n[[task]]\nforce_range_N = 8\n'
 
 
@@ -76,6 +93,8 @@ def good_files() -> dict[str, list[Content]]:
     for example in examples().values():
         files.setdefault(example.kind, []).append(read_toml(example.path))
     files["calibration"].append(CONTENT)
+    files["pad-calibration"].append(PAD_CALIBRATION)
+    files["pad-campaign"] = [PAD_CAMPAIGN]
     files["coupons"] = [tomllib.loads(RESULTS)]
     files["tasks"] = [tomllib.loads(TASKS)]
     files["sweep"].append(tomllib.loads(POINTS))

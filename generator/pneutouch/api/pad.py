@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,8 +16,9 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError
 from pneutouch.mechanics.touch.cell import TABLE_ERROR
 from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
-from pneutouch.mechanics.touch.pad_reader import PadReader, find_fault
+from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.units import KPA
+from pneutouch.workflows.pad.fault import find_fault, pad_reader
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.load import load_pad as resolved
 from pneutouch.workflows.pad.touch import pad_model
@@ -68,7 +69,7 @@ class PadTouch(Shown):
     """A pad at one driving pressure, whose cells have been tabulated: contacts forwards and readings backwards."""
 
     def __init__(self, model: PadModel) -> None:
-        self._model, self._readers = model, dict[tuple[Any, ...], PadReader]()
+        self._model, self._tables = model, dict[tuple[float, float], Mapping[str, Any]]()
 
     @property
     def driving_pressure_kPa(self) -> float:
@@ -121,21 +122,27 @@ class PadTouch(Shown):
         numbers = sorted(set(left_out))
         if (numbers and not 1 <= numbers[0] <= numbers[-1] <= count) or len(numbers) >= count:
             raise InputError("no such cells", key="left_out", value=numbers, remedy=f"give some of 1 to {count}")
-        key = (noise_kPa, model_error, *numbers)
-        if key not in self._readers:
-            used = ~np.isin(np.arange(1, count + 1), numbers)
-            self._readers[key] = PadReader(self._model, noise_kPa * KPA, model_error, used)
-        return PadEstimate(*self._readers[key].read(KPA * rises_kPa))
+        reader = pad_reader(self._table(noise_kPa, model_error), numbers)
+        contacts = [reader.read(cells_kPa) for cells_kPa in rises_kPa.tolist()]
+        kind, force_N, of_force_N, x, y, xx, xy, yy, bend, of_bend = map(np.array, zip(*contacts, strict=True))
+        spread = np.stack([xx, xy, xy, yy], axis=-1).reshape(-1, 2, 2)
+        return PadEstimate(kind, force_N, of_force_N, np.column_stack([x, y]), spread, bend, of_bend)
+
+    def _table(self, noise_kPa: float, model_error: float) -> Mapping[str, Any]:
+        key = noise_kPa, model_error
+        if key not in self._tables:
+            self._tables[key] = reader_table(self._model, *key)
+        return self._tables[key]
 
     def fault(
         self, pressure_rises_kPa: ArrayLike, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0
     ) -> tuple[str, tuple[int, ...]]:
         """The fault that explains why readings (m, n) of many contacts are ``outside``: ``lost`` or ``swapped``, with
-        the numbers of the cells from 1; ``none``, or ``unknown``. Takes about half a minute for seven cells."""
+        the numbers of the cells from 1; ``none``, or ``unknown``. Takes some seconds for seven cells."""
         rises_kPa = np.atleast_2d(np.asarray(pressure_rises_kPa, dtype=float))
         self.read(rises_kPa[:1], noise_kPa, (), model_error)
-        found = find_fault(self._readers[noise_kPa, model_error], KPA * rises_kPa)
-        return found.kind, tuple(k + 1 for k in found.cells)
+        found = find_fault(self._table(noise_kPa, model_error), rises_kPa)
+        return found.kind, found.cells
 
     def _head(self) -> str:
         return f"pad of {len(self._model.places)} cells at {self.driving_pressure_kPa:g} kPa, to {self.depth_mm:.3g} mm"

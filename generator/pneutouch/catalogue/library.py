@@ -136,6 +136,12 @@ def _pad(content: dict[str, Any], where: str) -> BaseModel:
     return validate(PadFile, content, where)
 
 
+def _pad_calibration(content: dict[str, Any], where: str) -> BaseModel:
+    from pneutouch.spec.pad import PadCalibration
+
+    return validate(PadCalibration, content, where)
+
+
 def _calibration(content: dict[str, Any], where: str) -> BaseModel:
     from pneutouch.spec.calibration import SensorCalibration
 
@@ -168,6 +174,7 @@ KINDS: dict[str, FileKind] = {
     "specimens": FileKind(_specimen, "designs/specimens"),
     "pads": FileKind(_pad, "designs/pads"),
     "calibrations": FileKind(_calibration, "calibrations"),
+    "pad-calibrations": FileKind(_pad_calibration, "calibrations/pads"),
     "materials": FileKind(_one(Material), "printprofiles/materials"),
     "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
     "printers": FileKind(_one(Printer), "printprofiles"),

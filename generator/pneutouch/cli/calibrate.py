@@ -8,6 +8,7 @@ import typer
 from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, given, reading_of, with_fields, with_options
+from pneutouch.cli.pad_commands import calibrate_a_pad, is_planned
 from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words, table_text
 from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
 from pneutouch.spec.campaign import Campaign
@@ -21,6 +22,7 @@ parameter = parameters_of(__file__)
 @with_options(CalibrationOptions)
 @with_fields(Campaign, READING_FIELDS)
 def calibrate(
+    context: typer.Context,
     data: Annotated[Path, parameter("data")],
     design: Annotated[str | None, parameter("design")] = None,
     columns: ColumnsOption = None,
@@ -33,6 +35,9 @@ def calibrate(
     from pneutouch.workflows.characterize.load import reading_text
 
     asked = given(CalibrationOptions, fields)
+    if is_planned(str(data)):
+        calibrate_a_pad(context, data, out, asked.save, replace=asked.replace)
+        return
     with bar("reading runs", unit="MB") as progress:
         outcome = run_calibration(data, design, asked, out, progress=progress, reading=reading_of(columns, fields))
     record = outcome.record

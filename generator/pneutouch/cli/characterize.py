@@ -11,6 +11,7 @@ from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOptio
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_words, with_fields
+from pneutouch.cli.pad_commands import characterize_a_pad, is_planned
 from pneutouch.cli.terminal import bar, filled_text, notify, report_next, set_words
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.campaign import Campaign, RunKind
@@ -52,6 +53,9 @@ def characterize(
     from pneutouch.workflows.characterize.campaign import write
     from pneutouch.workflows.characterize.load import reading_text, same_failures
 
+    if is_planned(str(data)):
+        characterize_a_pad(context, data, out, json=json)
+        return
     _check(evidence, kind)
     with bar("reading runs", unit="MB") as progress:
         given, reading = changes(set_, calibration), reading_of(columns, fields)

@@ -5,8 +5,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
+import typer
+
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import parameters_of
+from pneutouch.cli.pad_commands import export_a_pad, is_pad
 from pneutouch.cli.terminal import bar, filled_text, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
@@ -38,6 +41,7 @@ def years_of(text: str, parameter: str) -> float:
 
 @cli.app.command("export-reader")
 def export_reader(
+    context: typer.Context,
     design: cli.DesignArgument,
     set_: cli.SetOption = None,
     calibration: cli.CalibrationOption = None,
@@ -53,6 +57,9 @@ def export_reader(
     from pneutouch.mechanics.models.choice import model_options
     from pneutouch.workflows.export_reader import make_reader, write_reader
 
+    if is_pad(design):
+        export_a_pad(context, design, set_, calibration, out)
+        return
     options = model_options(model or (None if tolerance else "auto"), tolerance)
     aged = None if age is None else years_of(age, "age")
     if simulator is not None and age is not None:

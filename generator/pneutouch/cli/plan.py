@@ -10,6 +10,7 @@ from pneutouch.cli import app as cli
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
+from pneutouch.cli.pad_commands import is_pad, plan_a_pad
 from pneutouch.cli.terminal import bar, notify, report_next, table_text
 from pneutouch.errors import PneutouchError
 from pneutouch.results.plan import PlannedCampaign
@@ -33,6 +34,10 @@ def plan(
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     from pneutouch.workflows.plan import make_plan, rig_of, write_plan
+
+    if is_pad(design):
+        plan_a_pad(context, design, set_, out)
+        return
 
     with bar("planning the runs"):
         result = make_plan(

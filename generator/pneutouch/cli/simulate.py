@@ -3,9 +3,12 @@
 from pathlib import Path
 from typing import Annotated, Any
 
+import typer
+
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.declared import given, with_options
+from pneutouch.cli.pad_commands import is_pad, is_planned, simulate_a_pad
 from pneutouch.cli.terminal import bar, echo, notify, report_next
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.wording import counted
@@ -16,6 +19,7 @@ parameter = parameters_of(__file__)
 @app.command()
 @with_options(SimulationOptions)
 def simulate(
+    context: typer.Context,
     design: Annotated[str, parameter("design")],
     set_: SetOption = None,
     calibration: CalibrationOption = None,
@@ -27,6 +31,9 @@ def simulate(
     from pneutouch.workflows.simulate import simulate
 
     asked = given(SimulationOptions, options)
+    if is_pad(design) or is_planned(design):
+        simulate_a_pad(context, design, set_, out, asked.seed)
+        return
     with bar("simulating specimens") as progress:
         folder = simulate(design, out, changes(set_, calibration), asked, progress=progress)
     _report(folder, asked, json=json)

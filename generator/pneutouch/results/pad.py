@@ -59,3 +59,47 @@ class PadRecord:
     """Cells by number."""
     assumptions: tuple[str, ...]
     """Assumptions of the prediction of a cell, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredCell:
+    """A cell of a measured pad."""
+
+    number: int
+    """Number, from 1."""
+    place_mm: tuple[float, float]
+    """Axis of the dome (x, y), seen from the domes."""
+    rise_factor: float
+    """Pressure rise over the predicted one."""
+    rise_factor_uncertainty: float
+    """Its standard uncertainty."""
+
+
+@dataclass(frozen=True, slots=True)
+class PadFigures:
+    """Readings of a pad beside its prediction."""
+
+    pad: str
+    """Name of the pad."""
+    simulated: bool
+    """True for readings that nobody measured."""
+    driving_pressure_kPa: float
+    """Driving pressure of every cell."""
+    ball_radius_mm: float
+    """Radius of the ball."""
+    readings: int
+    """Number of readings in contact that are used."""
+    by_hand: int
+    """Number of those whose place is not known."""
+    force_factor: float
+    """Force over the predicted one."""
+    force_factor_uncertainty: float
+    """Its standard uncertainty."""
+    stage_zero_mm: tuple[float, float, float] | None
+    """Place of the stage's zero on the pad: x, y, and depth below the domes' tops; null: all readings are by hand."""
+    rise_error: float
+    """Error left in the rises, root mean square, over the greatest of a reading."""
+    force_error: float
+    """Relative error left in the forces, root mean square."""
+    cells: tuple[MeasuredCell, ...]
+    """Cells by number."""

@@ -2,7 +2,7 @@
 
 import math
 import re
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -109,3 +109,43 @@ class PadFile(Table):
 
     document: DocumentHead = DocumentHead(title="Pad of pneumatic touch sensors")
     pad: PadTable
+
+
+class PadRun(Table):
+    """[[runs]]: one recording of a ball on a pad."""
+
+    file: str = Field(min_length=1, max_length=200, description="Name of the file beside the campaign.")
+    kind: Literal["stage", "hand"] = Field(
+        default="stage", description="Whether a stage knows where the ball is, or it is held by hand."
+    )
+
+
+class PadCampaign(Table):
+    """A campaign of balls pressed onto a pad: one TOML file beside its recordings."""
+
+    pad: str = Field(min_length=1, description="Pad, by name or path.")
+    assignments: list[str] = Field(default=[], description="Changes of the pad, as `set` takes them.")
+    driving_pressure_kPa: float = Field(ge=0, le=1000, description="Driving pressure of every cell.")
+    ball_radius_mm: float = Field(gt=0, le=1000, description="Radius of the ball.")
+    force_resolution_N: float = number(0.02, unit="N", low=1e-6, high=100, help="Resolution of the force sensor.")
+    lab: str = Field(default="", max_length=200, description="Who measured, where.")
+    simulated: bool = Field(default=False, description="True for data of `simulate`, which nobody measured.")
+    runs: list[PadRun] = Field(min_length=1, description="Recordings.")
+
+
+class PadCalibration(Table):
+    """Readings of a pad in hand over its prediction, fitted to a campaign."""
+
+    pad: str = Field(description="Name of the pad.")
+    places_mm: list[list[float]] = Field(description="Axes [x, y] of its cells.")
+    driving_pressure_kPa: float = Field(ge=0, le=1000, description="Driving pressure of the campaign.")
+    force_factor: float = Field(gt=0, le=20, description="Force over the predicted one, of every cell.")
+    force_factor_uncertainty: float = Field(ge=0, le=20, description="Its standard uncertainty.")
+    rise_factors: list[float] = Field(description="Pressure rise over the predicted one, by cell.")
+    rise_factor_uncertainties: list[float] = Field(description="Their standard uncertainties.")
+    model_error: float = Field(
+        ge=0, le=1, description="Error left in rises, over the greatest of a reading: root mean square."
+    )
+    readings: int = Field(ge=1, description="Number of readings.")
+    simulated: bool = Field(default=False, description="True if the campaign was simulated.")
+    digest: str = Field(description="SHA-256 of the recordings.")

@@ -5,7 +5,7 @@ coupled by its height, so that here forces and pressure are functions of the tra
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -106,6 +106,12 @@ class CellTable:
         radius, outer, depth, apex, cavity, pressure = map(float, arrays["numbers"])
         return CellTable(radius, outer, depth, apex, cavity, pressure, *kinds)
 
+    def with_force(self, factor: float) -> "CellTable":
+        """The table of a cell whose forces and moments are ``factor`` times as great."""
+        scale = np.array([factor, factor, factor, 1.0])
+        balls, plates = (replace(nodes, values=nodes.values * scale) for nodes in (self.balls, self.plates))
+        return replace(self, balls=balls, plates=plates)
+
     def under_ball(self, ball_radius: Array, offset: Array, height: Array) -> CellAnswer:
         """Under balls of radii from the first to the last of `BALLS`, their axes at distances ``offset`` from that of
         the dome and their lowest points at ``height`` over the base plane; arrays of one shape."""
@@ -119,6 +125,17 @@ class CellTable:
     def under_plate(self, lean: Array, height: Array) -> CellAnswer:
         """Under plates that lean by angles of sines ``lean`` and whose plane crosses the axis at ``height``."""
         return self._at(self.plates, np.zeros_like(lean), lean**2, lean, height)
+
+    def straight(self, kind: str, bends: Array, leans: Array) -> tuple[Array, Array, Array]:
+        """Height at first contact (a, b), end of the range (a, b), and force, sideways force, moment and rise at equal
+        travels (a, b, `_POINTS`, 4), between which a reader may go straight: of ``balls`` at ``bends`` (a,), R0 over
+        their radii, and shares ``leans`` (b,) of the greatest offset; of ``plates`` at sines ``leans``."""
+        nodes: _Nodes = getattr(self, kind)
+        by_row, by_column = nodes.rows.weights(-np.log(bends)), nodes.columns.weights(leans**2)
+        first, reach = (np.einsum("ra,cb,ab->rc", by_row, by_column, part) for part in (nodes.first, nodes.reach))
+        values = np.einsum("ra,cb,abpk->rcpk", by_row, by_column, nodes.values)
+        values[..., 1:3] *= leans[:, None, None]
+        return first, reach, values
 
     def _at(self, nodes: _Nodes, rows: Array, columns: Array, lean: Array, height: Array) -> CellAnswer:
         shape = np.shape(height)

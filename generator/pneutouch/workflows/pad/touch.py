@@ -2,6 +2,7 @@
 
 import hashlib
 from contextlib import suppress
+from dataclasses import replace
 from zipfile import BadZipFile
 
 import numpy as np
@@ -12,6 +13,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.touch.cell import CellTable, cell_table
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.shape.hemisphere import no_hemisphere
+from pneutouch.spec.pad import PadCalibration
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.load import ResolvedPad
 
@@ -35,6 +37,25 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
     behind = ML * np.array(pad.dead_volumes_mL)
     gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
     return PadModel(np.array(pad.layout.places), table, gain)
+
+
+def pad_pressure_kPa(pad: ResolvedPad) -> float:
+    """The greatest driving pressure of a pad's cell, at which it is measured and read unless another is given."""
+    return max(pad.scene.design.pneumatics.driving_pressures_kPa)
+
+
+def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibration]:
+    """The forward model of a pad in hand, by a calibration, at its driving pressure. Raises InputError for an unknown
+    calibration and for that of another pad."""
+    calibration: PadCalibration = pad.library.load("pad-calibrations", name)
+    places = np.array(pad.layout.places)
+    if np.shape(calibration.places_mm) != places.shape or not np.allclose(calibration.places_mm, places, atol=1e-3):
+        remedy = f"calibrate {pad.name}, or give the calibration of this pad"
+        problem = f"of the pad {calibration.pad}, whose cells lie elsewhere"
+        raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
+    model = pad_model(pad, calibration.driving_pressure_kPa)
+    scaled = model.table.with_force(calibration.force_factor)
+    return replace(model, table=scaled, gain=model.gain * calibration.rise_factors), calibration
 
 
 def _kept(sensor: Sensor, pressure: float) -> CellTable:

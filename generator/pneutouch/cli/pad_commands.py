@@ -1,0 +1,106 @@
+"""Pads in the commands of one sensor: plan, simulate, characterize, calibrate and export-reader."""
+
+from pathlib import Path
+
+import typer
+
+from pneutouch.cli.app import changes, print_answer
+from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words
+from pneutouch.errors import InputError
+
+_OURS = ("design", "data", "set_", "calibration", "out", "json", "seed", "save", "replace")
+"""Parameters of these commands that hold for pads too."""
+
+
+def is_pad(design: str) -> bool:
+    """True if a pad has this name or path."""
+    from pneutouch.catalogue import Library
+
+    return Library.default().pad_file(design) is not None
+
+
+def is_planned(folder: str) -> bool:
+    """True for the folder of a pad's plan or campaign."""
+    from pneutouch.workflows.pad.measured import is_pad_campaign
+
+    return is_pad_campaign(Path(folder))
+
+
+def plan_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: Path) -> None:
+    """Plan presses of a ball over a pad."""
+    from pneutouch.workflows.pad.campaign import plan_pad, write_pad_plan
+    from pneutouch.workflows.pad.load import load_pad
+
+    _refuse_others(context, name)
+    with bar("tabulating a cell"):
+        folder = write_pad_plan(plan_pad(load_pad(name, changes(set_))), out, changes(set_))
+    echo(str(folder))
+    report_next("simulate", folder)
+
+
+def simulate_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: Path, seed: int) -> None:
+    """Simulate recordings of a pad, given by its name or by the folder of its plan."""
+    from pneutouch.spec.pad import PadCampaign
+    from pneutouch.spec.read import parse_changes, read_toml, validate
+    from pneutouch.workflows.pad.campaign import CAMPAIGN, plan_pad, simulate_pad
+    from pneutouch.workflows.pad.load import load_pad
+
+    _refuse_others(context, name)
+    given = changes(set_)
+    if is_planned(name):
+        campaign: PadCampaign = validate(PadCampaign, read_toml(Path(name) / CAMPAIGN), f"{name}/{CAMPAIGN}")
+        name, given = campaign.pad, parse_changes(campaign.assignments) | given
+    with bar("simulating presses"):
+        folder = simulate_pad(plan_pad(load_pad(name, given)), out, seed, given)
+    echo(str(folder))
+    report_next("characterize", folder)
+
+
+def characterize_a_pad(context: typer.Context, data: Path, out: Path, *, json: bool) -> None:
+    """Set the readings of a pad beside its prediction."""
+    from pneutouch.workflows.pad.measured import fitted, read_campaign
+    from pneutouch.workflows.pad.measured_files import write_figures
+
+    _refuse_others(context, str(data))
+    with bar("fitting the readings"):
+        measured = read_campaign(data)
+        record, folder = write_figures(measured, fitted(measured), out)
+    print_answer(record, lambda one: filled_text("pad.txt.j2", record=one), folder, json=json)
+    if not json:
+        report_next("calibrate", data)
+
+
+def calibrate_a_pad(context: typer.Context, data: Path, out: Path, save: str | None, *, replace: bool) -> None:
+    """Fit a pad's prediction to its readings and save that among the user's calibrations of pads."""
+    from pneutouch.workflows.pad.measured import calibration_of, fitted, read_campaign
+    from pneutouch.workflows.pad.measured_files import save_calibration, write_figures
+
+    _refuse_others(context, str(data))
+    with bar("fitting the readings"):
+        measured = read_campaign(data)
+        fit = fitted(measured)
+        path = save_calibration(calibration_of(measured, fit), save or measured.pad.name, replace=replace)
+    echo(f"{filled_text('pad.txt.j2', record=write_figures(measured, fit, out)[0])}\n\n{path}")
+    given = set_words(measured.campaign.assignments)
+    report_next("export-reader", measured.campaign.pad, "--calibration", path.stem, *given)
+
+
+def export_a_pad(context: typer.Context, name: str, set_: list[str] | None, calibration: str | None, out: Path) -> None:
+    """Write the reader of a pad."""
+    from pneutouch.workflows.pad.export import write_pad_reader
+    from pneutouch.workflows.pad.load import load_pad
+
+    _refuse_others(context, name)
+    with bar("tabulating a cell"):
+        folder = write_pad_reader(load_pad(name, changes(set_)), calibration, out)
+    echo(str(folder))
+    files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
+    notify(f"how to use it: the examples at the head of {files}")
+
+
+def _refuse_others(context: typer.Context, name: str) -> None:
+    """Raise InputError for an option that was given and does not hold for pads."""
+    for one in context.command.params:
+        source = context.get_parameter_source(one.name or "")
+        if one.name not in _OURS and source is not None and source.name == "COMMANDLINE":
+            raise InputError(f"{max(one.opts, key=len)} is of one sensor, not of a pad", file=name)

@@ -1,0 +1,77 @@
+"""The table of a pad's exported reader: the cell's answers on nodes between which it goes straight, and objects from
+which its fits start."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array, Indices
+from pneutouch.mechanics.touch.cell import BALLS, TABLE_ERROR, TILTS
+from pneutouch.mechanics.touch.forward import ObjectKind, PadModel
+from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
+from pneutouch.units import KPA
+
+_BENDS, _SHARES, _LEANS = 7, 19, 7
+"""Nodes of curvature, offset and lean: 70 kB."""
+STARTS = (192, 64)
+"""Number of balls and of plates from which a fit starts."""
+STRAIGHT = 0.003
+"""Error of rises between the nodes over the greatest of a reading: root mean square (tests/export/reader)."""
+_OF_EACH = 40
+"""Number of random objects from which each of those is chosen."""
+_SEED = 1
+
+
+def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0) -> Mapping[str, Any]:
+    """The table as data; ``noise_kPa`` is the standard deviation of a gauge, ``model_error`` that of the prediction
+    over the greatest rise of a reading. Numbers are rounded to those of float32."""
+    table = model.table
+    bends = np.linspace(1.0 / BALLS[-1], 1.0 / BALLS[0], _BENDS)
+    nodes = [
+        table.straight("balls", bends, np.linspace(0.0, 1.0, _SHARES)),
+        table.straight("plates", np.ones(1), np.linspace(0.0, TILTS[-1], _LEANS)),
+    ]
+    random = np.random.default_rng(_SEED)
+    drawn = [random_objects(model, kind, _OF_EACH * size, random) for kind, size in zip(KINDS, STARTS, strict=True)]
+    return {
+        "places_mm": _single(model.places),
+        "gains": _single(model.gain),
+        "noise_kPa": _single(noise_kPa),
+        "model_error": _single(np.hypot(model_error, STRAIGHT)),
+        "radius_mm": _single(table.radius),
+        "outer_mm": _single(table.outer),
+        "depth_mm": _single(table.depth),
+        "apex_mm": _single(table.apex),
+        "bends": _single(bends[[0, -1]]),
+        "steepest": _single(TILTS[-1]),
+        "spreads": [_single(objects.std(axis=0)) for objects in drawn],
+        "nodes": [
+            {"first_mm": _single(first), "reach_mm": _single(reach), "values": _single(values / [1.0, 1.0, 1.0, KPA])}
+            for first, reach, values in nodes
+        ],
+        "starts": [
+            _starts(model, kind, objects, size, noise_kPa)
+            for kind, objects, size in zip(KINDS, drawn, STARTS, strict=True)
+        ],
+    }
+
+
+def _starts(model: PadModel, kind: ObjectKind, objects: Array, count: int, noise_kPa: float) -> list[dict[str, Any]]:
+    """Objects whose readings are as far apart as can be, with their rises on the scale on which the nearest is."""
+    scaled = np.arcsinh(answer_of(model, kind, objects).rise / KPA / (4.0 * noise_kPa))
+    return [{"object": _single(objects[k]), "scaled_rises": _single(scaled[k])} for k in _apart(scaled, count)]
+
+
+def _apart(points: Array, count: int) -> Indices:
+    """Numbers of ``count`` of the points (m, n), each the one farthest from those before it."""
+    chosen = [0]
+    distance = np.square(points - points[0]).sum(axis=1)
+    while len(chosen) < count:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.square(points - points[chosen[-1]]).sum(axis=1))
+    return np.array(chosen)
+
+
+def _single(values: Any) -> Any:
+    return np.asarray(values, dtype=np.float32).astype(float).tolist()
