@@ -39,6 +39,8 @@ def test_a_studio_that_was_stopped_and_another_at_its_port(pages):
         left = page.evaluate("location.hash")
         other = page.context.new_page()
         other.goto(address)
+        # The key of the new studio is kept only once its page has asked for it.
+        until(other, SOLVED)
         other.close()
         # The user comes back from the other tab: the design that was left is answered, without another move.
         page.evaluate("window.dispatchEvent(new Event('focus'))")
