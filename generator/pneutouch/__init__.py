@@ -21,7 +21,7 @@ _HOMES = {
         "scan",
         "simulate",
     ),
-    "api.pad": ("Pad", "PadContact", "PadEstimate", "PadTouch", "load_pad"),
+    "api.pad": ("Pad", "PadContact", "PadEstimate", "PadResolution", "PadTouch", "load_pad"),
     "api.show": ("Listing", "calibrations", "designs", "gauges", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }

@@ -13,6 +13,7 @@ from pneutouch.api.measuring import simulate as simulate
 from pneutouch.api.pad import Pad as Pad
 from pneutouch.api.pad import PadContact as PadContact
 from pneutouch.api.pad import PadEstimate as PadEstimate
+from pneutouch.api.pad import PadResolution as PadResolution
 from pneutouch.api.pad import PadTouch as PadTouch
 from pneutouch.api.pad import load_pad as load_pad
 from pneutouch.api.prediction import FigureValue as FigureValue

@@ -17,6 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.touch.cell import TABLE_ERROR
 from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
 from pneutouch.mechanics.touch.reader_table import reader_table
+from pneutouch.mechanics.touch.resolution import resolution
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import find_fault, pad_reader
 from pneutouch.workflows.pad.load import ResolvedPad
@@ -41,6 +42,19 @@ class PadContact:
     force_N: Array
     centre_mm: Array
     inside: Flags
+
+
+@dataclass(frozen=True)
+class PadResolution:
+    """Standard deviations for m contacts.
+
+    Attributes:
+        force_N: Of the force (m,).
+        place_mm: Of the centre of the force, both directions together (m,).
+    """
+
+    force_N: Array
+    place_mm: Array
 
 
 @dataclass(frozen=True)
@@ -100,6 +114,21 @@ class PadTouch(Shown):
         """Plates that rise by slopes along x and y, pressed to ``depth_mm`` below the domes' tops at x = y = 0."""
         x, y, depth = _columns(slope_x=slope_x, slope_y=slope_y, depth_mm=depth_mm)
         return _contact(self._model.under_plates(np.column_stack([x, y]), depth))
+
+    def resolution(
+        self,
+        x_mm: ArrayLike,
+        y_mm: ArrayLike,
+        radius_mm: ArrayLike,
+        depth_mm: ArrayLike,
+        noise_kPa: float,
+        model_error: float = TABLE_ERROR / 3.0,
+    ) -> PadResolution:
+        """Standard deviations of force and place that readings of balls leave, of which nothing else is known: their
+        Fisher information. Where one cell is touched the region of the place is a curve, and shorter than this says."""
+        x, y, radius, depth = _columns(x_mm=x_mm, y_mm=y_mm, radius_mm=radius_mm, depth_mm=depth_mm)
+        balls = np.column_stack([x, y, self._model.table.radius / radius, depth])
+        return PadResolution(*resolution(self._model, "ball", balls, noise_kPa * KPA, model_error))
 
     def read(
         self,

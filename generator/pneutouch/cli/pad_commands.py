@@ -1,15 +1,24 @@
 """Pads in the commands of one sensor: plan, simulate, characterize, calibrate and export-reader."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from pneutouch.cli.app import changes, print_answer
-from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words
+from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words, table_text
 from pneutouch.errors import InputError
+from pneutouch.spec.values import plain_number
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.select.pads import PadTarget, PadTrial
 
 _OURS = ("design", "data", "set_", "calibration", "out", "json", "seed", "save", "replace")
 """Parameters of these commands that hold for pads too."""
+_WANTED = {"force_error": 10.0, "place_error": 1.0, "gauges": 12, "ball": 8.0}
+"""Errors, gauges and ball of a pad that is selected, where they are not given: our choice."""
+_SIZES = ("inner_radius", "wall_thickness")
 
 
 def is_pad(design: str) -> bool:
@@ -98,9 +107,50 @@ def export_a_pad(context: typer.Context, name: str, set_: list[str] | None, cali
     notify(f"how to use it: the examples at the head of {files}")
 
 
-def _refuse_others(context: typer.Context, name: str) -> None:
+def select_a_pad(
+    context: typer.Context, area: str, wanted: Mapping[str, float | None], gauge: str | None, charts: Path | None
+) -> None:
+    """Find the pad with the fewest cells that reads force and place as well as wanted; exit 1 if there is none."""
+    from pneutouch.workflows.select.pads import PadTarget, select_pads, write_pad_chart
+
+    _refuse_others(context, f"--pad {area}", (*_WANTED, "pad", "gauge", "charts"))
+    try:
+        width, depth = (plain_number(text) for text in area.lower().split("x"))
+    except ValueError:
+        raise InputError("write width and depth in mm", key="pad", value=area, remedy="such as 30x20") from None
+    values = {key: _WANTED[key] if value is None else value for key, value in wanted.items()}
+    for key, value in {**values, "pad": min(width, depth)}.items():
+        if not value > 0.0:
+            raise InputError("must be more than 0", key=key, value=value)
+    force, place, ball = values["force_error"] / 100.0, values["place_error"], values["ball"]
+    target = PadTarget((width, depth), force, place, ball, int(values["gauges"]), gauge)
+    with bar("reading balls on pads"):
+        trials = select_pads(target)
+    rows = [_row(one, target) for one in trials]
+    head = ["layout", "pitch mm", "R0 mm", "force +- %", "place +- mm", "read %", "meets"]
+    echo(f"median errors under balls of {ball:g} mm radius anywhere on {width:g} x {depth:g} mm, TangoPlus, 12 kPa")
+    echo(table_text(head, rows))
+    if charts is not None:
+        write_pad_chart(trials, target, charts)
+        echo(str(charts / "pad-trade-off.svg"))
+    best = next((one for one in trials if one.meets(target)), None)
+    if best is None:
+        raise typer.Exit(1)
+    radius, wall = (f"membrane.{key}_mm={size:.2f}" for key, size in zip(_SIZES, best.sizes, strict=True))
+    sets = set_words([radius, wall, "pneumatics.driving_pressures_kPa=[0,12]"])
+    report_next("new", "NAME", "--pad", best.layout, "--pitch", f"{best.pitch:.3g}", *sets)
+
+
+def _row(one: "PadTrial", target: "PadTarget") -> list[str]:
+    numbers = one.pitch, one.sizes[0], 100.0 * one.force_error, one.place_error, 100.0 * one.read
+    forms = ("%.3g", "%.2f", "%.1f", "%.2f", "%.0f")
+    texts = [form % number for form, number in zip(forms, numbers, strict=True)]
+    return [one.layout, *texts, "yes" if one.meets(target) else ""]
+
+
+def _refuse_others(context: typer.Context, name: str, ours: Sequence[str] = _OURS) -> None:
     """Raise InputError for an option that was given and does not hold for pads."""
     for one in context.command.params:
         source = context.get_parameter_source(one.name or "")
-        if one.name not in _OURS and source is not None and source.name == "COMMANDLINE":
+        if one.name not in ours and source is not None and source.name == "COMMANDLINE":
             raise InputError(f"{max(one.opts, key=len)} is of one sensor, not of a pad", file=name)

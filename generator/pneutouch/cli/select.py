@@ -13,6 +13,7 @@ import typer
 from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, SetOption, app, design_folder, print_json
 from pneutouch.cli.complete import parameters_of, percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
+from pneutouch.cli.pad_commands import select_a_pad
 from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.results.selection import GradedRecord
@@ -91,8 +92,14 @@ _FLAGS_ALONE = "select"
 @app.command()
 @with_fields(Target, SELECT_FIELDS)
 def select(
+    context: typer.Context,
     target: Annotated[Path | None, parameter("target")] = None,
     have: Annotated[Path | None, parameter("have")] = None,
+    pad: Annotated[str | None, parameter("pad")] = None,
+    force_error: Annotated[float | None, parameter("force_error")] = None,
+    place_error: Annotated[float | None, parameter("place_error")] = None,
+    gauges: Annotated[int | None, parameter("gauges")] = None,
+    ball: Annotated[float | None, parameter("ball")] = None,
     set_: SetOption = None,
     write: Annotated[str | None, parameter("write")] = None,
     pick: Annotated[int, parameter("pick")] = 1,
@@ -103,6 +110,13 @@ def select(
     **fields: Any,
 ) -> None:
     """Find designs for a target; exit 1 if there is none."""
+    wanted = {"force_error": force_error, "place_error": place_error, "gauges": gauges, "ball": ball}
+    if pad is not None:
+        select_a_pad(context, pad, wanted, fields["gauge"], charts)
+        return
+    for key, value in wanted.items():
+        if value is not None:
+            raise InputError("is of a pad", key=key, value=value, remedy="give `pad` too, such as 30x20")
     where = str(target or _FLAGS_ALONE)
     stated = {name: SELECT_FIELDS[name] for name, value in fields.items() if value is not None}
     given = {f"{option.table}.{option.key}": name for name, option in stated.items()}

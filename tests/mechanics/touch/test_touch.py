@@ -12,7 +12,8 @@ from pneutouch.mechanics.touch import cell as cells
 from pneutouch.mechanics.touch.cell import TABLE_ERROR, cell_table, greatest_lean
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import answer_of, random_objects
-from pneutouch.mechanics.touch.reader_table import reader_table
+from pneutouch.mechanics.touch.reader_table import STRAIGHT, reader_table
+from pneutouch.mechanics.touch.resolution import resolution
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import find_fault, pad_reader
@@ -186,6 +187,24 @@ def test_what_no_object_explains_is_outside_and_noise_is_nothing(pad, table):
     kinds, told = read(table, np.concatenate([checkered, quiet]))
     assert kinds.tolist() == ["outside", "none", "none", "none"]
     assert np.isnan(told[0, 0]) and not told[0, 1:].any()
+
+
+def test_information_grows_with_quiet_gauges_and_is_least_where_one_cell_is_touched(pad):
+    balls = np.array([[4.5, 2.6, 0.35, 1.3], [0.0, 0.0, 0.35, 0.9]])
+    quiet, noisy = (resolution(pad, "ball", balls, noise, 1e-3) for noise in (NOISE, 30.0 * NOISE))
+    assert (quiet.force < noisy.force).all() and (quiet.place <= noisy.place).all()
+    assert (pad.under_balls(balls[:, :2], pad.table.radius / balls[:, 2], balls[:, 3]).forces > 0).sum(axis=1)[1] == 1
+    assert quiet.place[1] > 5.0 * quiet.place[0]
+
+
+def test_what_a_reading_leaves_is_what_information_says(pad, table):
+    """Plates, of which a reading is well known: errors over the standard deviations that the information gives."""
+    answer, rise = readings(pad, "plate", 60, 9)
+    objects = random_objects(pad, "plate", 180, np.random.default_rng(9))
+    known = resolution(pad, "plate", objects, NOISE, STRAIGHT)
+    told = read(table, rise)[1]
+    ratio = np.nanmedian(np.abs(told[0] - answer.force)) / np.median(known.force)
+    assert 0.2 < ratio < 1.5
 
 
 @pytest.mark.slow

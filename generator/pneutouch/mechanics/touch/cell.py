@@ -106,11 +106,16 @@ class CellTable:
         radius, outer, depth, apex, cavity, pressure = map(float, arrays["numbers"])
         return CellTable(radius, outer, depth, apex, cavity, pressure, *kinds)
 
-    def with_force(self, factor: float) -> "CellTable":
-        """The table of a cell whose forces and moments are ``factor`` times as great."""
-        scale = np.array([factor, factor, factor, 1.0])
-        balls, plates = (replace(nodes, values=nodes.values * scale) for nodes in (self.balls, self.plates))
-        return replace(self, balls=balls, plates=plates)
+    def scaled(self, size: float = 1.0, force: float = 1.0) -> "CellTable":
+        """The table of a similar cell, ``size`` times as large, with ``force`` times the forces of its size; pressures
+        are the same where the gas behind the cell is similar too."""
+        scale = force * size**2 * np.array([1.0, 1.0, size, 1.0 / (force * size**2)])
+        balls, plates = (
+            replace(one, values=one.values * scale, first=one.first * size, reach=one.reach * size)
+            for one in (self.balls, self.plates)
+        )
+        lengths = {name: size * getattr(self, name) for name in ("radius", "outer", "depth", "apex")}
+        return replace(self, balls=balls, plates=plates, cavity=self.cavity * size**3, **lengths)
 
     def under_ball(self, ball_radius: Array, offset: Array, height: Array) -> CellAnswer:
         """Under balls of radii from the first to the last of `BALLS`, their axes at distances ``offset`` from that of

@@ -54,7 +54,7 @@ def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibrat
         problem = f"of the pad {calibration.pad}, whose cells lie elsewhere"
         raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
     model = pad_model(pad, calibration.driving_pressure_kPa)
-    scaled = model.table.with_force(calibration.force_factor)
+    scaled = model.table.scaled(force=calibration.force_factor)
     return replace(model, table=scaled, gain=model.gain * calibration.rise_factors), calibration
 
 
