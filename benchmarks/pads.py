@@ -20,6 +20,7 @@ from pneutouch.arrays import Array
 from pneutouch.evaluation import evaluate
 from pneutouch.export.reader.pad_render import PadReaderSource, pad_reader_files
 from pneutouch.mechanics.anywhere.reading import FARTHEST, ball_places, force_logs, state_conditions
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.touch.cell import cell_table
 from pneutouch.mechanics.touch.forward import ObjectKind, PadAnswer, PadModel
 from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
@@ -39,8 +40,13 @@ CELL = {
 }
 
 
+def cell_sensor() -> Sensor:
+    """The cell of the pad on its flange."""
+    return evaluate("paper-dome", CELL, clamp="flange").sensor
+
+
 def main() -> None:
-    table, seconds = timed(lambda: cell_table(evaluate("paper-dome", CELL).sensor, PRESSURE_KPA * KPA))
+    table, seconds = timed(lambda: cell_table(cell_sensor(), PRESSURE_KPA * KPA))
     places = np.array(PadTable(cell="cell", layout="ring:7", pitch_mm=PITCH).places)
     pad = PadModel(places, table, np.ones(len(places)))
     rows = {kind: _row(pad, kind) for kind in KINDS}

@@ -8,6 +8,7 @@ import pytest
 import pneutouch as pt
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
+from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.touch import cell as cells
 from pneutouch.output.new_pad import new_pad
 from pneutouch.units import KPA
@@ -34,6 +35,17 @@ def test_pressures_forces_and_places_are_those_of_the_mechanics(touch):
     assert np.allclose(found.pressure_rises_kPa * KPA, inner.rise) and np.array_equal(found.forces_N, inner.forces)
     assert np.allclose(found.force_N, found.forces_N.sum(axis=1)) and found.inside.all()
     assert touch.driving_pressure_kPa == pytest.approx(12.0) and touch.ball_radii_mm[0] < 8.0 < touch.ball_radii_mm[1]
+
+
+def test_a_cell_yields_at_its_foot_as_on_its_flange(touch, tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    new_pad("tip", tmp_path / "designs", "row:3", 9.0)
+    depth, forces = np.array([0.6, 1.0, 1.4]), {}
+    for clamp in ("base", "flange"):
+        (state,) = solid_states(evaluate("tip-cell", clamp=clamp).sensor, np.array([12 * KPA]))
+        forces[clamp] = np.interp(depth, state.indentation, state.force)
+    found = touch.plate(0.0, 0.0, depth).forces_N[:, 0]
+    assert found == pytest.approx(forces["flange"], rel=0.02) and (found < 0.96 * forces["base"]).all()
 
 
 def test_a_kept_table_answers_alike_and_a_damaged_one_is_made_again(touch, tmp_path, monkeypatch):

@@ -1,6 +1,8 @@
 """Rigid objects on a pad: every cell answers for itself at the object's height, and the pad's answer is their sum.
 
-The membrane between the cells is taken as rigid, as a cell's own prediction takes its base plane.
+A table on a flange yields at its foot. What pressed neighbours do through it is left out: less than 1 % of force
+and rise. With three cells 9 mm apart (R0 2.78 mm, wall 1 mm) force and rises are within 3 %, and the centre within
+0.1 mm, of CalculiX in three dimensions (docs/howto/pads.md).
 """
 
 from dataclasses import dataclass

@@ -19,7 +19,7 @@ from pneutouch.workflows.pad.load import ResolvedPad
 
 
 def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
-    """Tabulate the cell of a pad at a driving pressure, about half a minute of processor time at the first time; the
+    """Tabulate the cell of a pad on its flange at a driving pressure, in 80 s of processor time at the first time; the
     table is then kept among those of `pneutouch table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a shape
@@ -33,7 +33,8 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
     if driving_pressure_kPa < 0.0:
         remedy = "give 0 or more"
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
-    table = _kept(cell.sensor, driving_pressure_kPa * KPA)
+    flange = pad.layout.cell.flange_width, pad.layout.cell.flange_thickness
+    table = _kept(cell.sensor.replace(flange=flange), driving_pressure_kPa * KPA)
     behind = ML * np.array(pad.dead_volumes_mL)
     gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
     return PadModel(np.array(pad.layout.places), table, gain)
