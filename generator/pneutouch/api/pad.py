@@ -25,6 +25,10 @@ from pneutouch.workflows.pad.load import load_pad as resolved
 from pneutouch.workflows.pad.touch import pad_model
 
 
+_KEPT = 8
+"""Number of tables of readers that are kept, each for one noise and model error."""
+
+
 @dataclass(frozen=True)
 class PadContact:
     """m contacts with a pad of n cells.
@@ -160,6 +164,8 @@ class PadTouch(Shown):
     def _table(self, noise_kPa: float, model_error: float) -> Mapping[str, Any]:
         key = noise_kPa, model_error
         if key not in self._tables:
+            if len(self._tables) >= _KEPT:
+                self._tables.clear()
             self._tables[key] = reader_table(self._model, *key)
         return self._tables[key]
 

@@ -302,11 +302,11 @@ def _leave_out(content: dict[str, Any], name: str) -> None:
         tables.pop(key, None)
 
 
-_WRITTEN = ("designs", "calibrations")
+_WRITTEN = ("designs", "calibrations", "pads")
 
 
 class PageLibrary(CachedLibrary):
-    """A cached library that looks for designs and calibrations anew each time, for the page writes them."""
+    """A cached library that looks for designs, calibrations and pads anew each time: they are written meanwhile."""
 
     def paths(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""

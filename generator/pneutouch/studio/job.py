@@ -19,6 +19,7 @@ KINDS: dict[str, str] = {
     "build": "design_jobs:build_design",
     "open": "design_jobs:open_file",
     "map": "design_jobs:map_design",
+    "pad": "pads:tabulate",
     "select": "search:search",
     "recognise": "measuring:recognised",
     "characterize": "measuring:characterize",

@@ -36,6 +36,7 @@ from pneutouch.studio.guard import (
     too_little_memory,
 )
 from pneutouch.studio.jobs import Desk
+from pneutouch.studio.pads import Pads
 from pneutouch.studio.solver import Solver, SupersededError
 
 _KINDS = {
@@ -55,7 +56,7 @@ class PageFile(NamedTuple):
 
 
 def page_files() -> dict[str, PageFile]:
-    """The files by the path that they are requested at; ``/`` is the page."""
+    """The files by the path that they are requested at; ``/`` is the page, which ``/pad`` opens on a pad."""
     root = files("pneutouch.studio") / "static"
     files_by_path = {}
     for folder, prefix in ((root, "/"), (root / "vendor", "/vendor/")):
@@ -64,7 +65,7 @@ def page_files() -> dict[str, PageFile]:
             if kind is not None and entry.is_file():
                 content = entry.read_bytes()
                 files_by_path[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
-    files_by_path["/"] = files_by_path.pop("/index.html")
+    files_by_path["/"] = files_by_path["/pad"] = files_by_path.pop("/index.html")
     return files_by_path
 
 
@@ -92,7 +93,7 @@ class Studio:
     def __init__(self, bases: dict[str, str], first: str) -> None:
         self._bases, self._first = bases, first
         self._library = PageLibrary(Library.default().folders)
-        self.answers = Answers(bases, self._library)
+        self.answers, self.pads = Answers(bases, self._library), Pads(self._library)
         self._solver, self.desk = Solver(bases), Desk(bases)
         self._one, self._waiting = asyncio.Lock(), 0
 
@@ -100,6 +101,7 @@ class Studio:
         """Form of a design and list of designs, from which the page is built."""
         form = await run_in_threadpool(design_form, self._library)
         known = {"designs": designs_of(self._bases), "first": self._first, "version": __version__}
+        known["pads"] = list(self._library.paths("pads"))
         return JSONResponse({**plain(form), **known})
 
     async def target_form(self, request: Request) -> Response:
@@ -161,6 +163,8 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/api/quick", partial(studio.at_once, studio.answers.quick), methods=["POST"]),
         Route("/api/intervals", partial(studio.at_once, studio.answers.intervals), methods=["POST"]),
         Route("/api/view", partial(studio.at_once, studio.answers.view), methods=["POST"]),
+        Route("/api/pad", partial(studio.at_once, studio.pads.open), methods=["POST"]),
+        Route("/api/pad/touch", partial(studio.at_once, studio.pads.touch), methods=["POST"]),
         Route("/api/solved", studio.solved, methods=["POST"]),
         Route("/api/echo", echo, methods=["POST"]),
         *studio.desk.routes(),

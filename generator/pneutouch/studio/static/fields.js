@@ -53,6 +53,19 @@ function boxes(field, linked, send) {
   return group;
 }
 
+const STEPS = 600;
+
+/** Bounds span decades: a slider moves by shares of its value, or by powers of it where zero is allowed. */
+const toValue = (field, place) => {
+  const share = place / STEPS;
+  const value = field.low > 0 ? field.low * (field.high / field.low) ** share : field.high * share ** 4;
+  return Math.min(field.high, Math.max(field.low, Number(value.toPrecision(3))));
+};
+export const toPlace = (field, value) => {
+  const share = field.low > 0 ? Math.log(value / field.low) / Math.log(field.high / field.low) : (value / field.high) ** 0.25;
+  return Math.round(STEPS * Math.max(0, Math.min(1, share)));
+};
+
 export class Fields {
   /** `changed(name, text, settled)`: a field has a new text, null where it is left out; settled when a move ends. */
   constructor(groups, changed) {
@@ -126,9 +139,29 @@ export class Fields {
     });
   }
 
-  /** The slider of a field; none here. */
-  slider() {
-    return null;
+  /** True for a field that has a slider; none here. */
+  slides() {
+    return false;
+  }
+
+  slider(field, entry) {
+    if (!this.slides(field)) return null;
+    const moved = (event, settled) => {
+      const value = toValue(field, Number(event.target.value));
+      const others = field.kind === "numbers" ? entry.input.value.split(",").map(Number).filter(Number.isFinite) : [];
+      // Of several driving pressures the slider moves the highest; those above it go.
+      const kept = others.sort((a, b) => a - b).slice(0, -1).filter((each) => each < value);
+      entry.input.value = [...kept, value].join(", ");
+      this.changed(field.name, typed(field, entry.input.value), settled);
+    };
+    return element("input", {
+      type: "range",
+      min: 0,
+      max: STEPS,
+      "aria-label": field.kind === "numbers" ? `Highest of the ${field.label.toLowerCase()}, ${field.unit}` : `${field.label}, ${field.unit}`,
+      oninput: (event) => moved(event, false),
+      onchange: (event) => moved(event, true),
+    });
   }
 
   fill(field, input, text) {

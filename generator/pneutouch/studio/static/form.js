@@ -1,6 +1,6 @@
 // The form of a design: what matters first, with sliders; values of the page's state over those of the design file.
 import { byId, element, short } from "./dom.js";
-import { asText, Fields, typed, untyped } from "./fields.js";
+import { asText, Fields, toPlace, untyped } from "./fields.js";
 
 const MAIN = [
   "membrane.shape",
@@ -13,18 +13,6 @@ const MAIN = [
   "contact.object",
   "contact.friction",
 ];
-const STEPS = 600;
-
-/** Bounds span decades: a slider moves by shares of its value, or by powers of it where zero is allowed. */
-const toValue = (field, place) => {
-  const share = place / STEPS;
-  const value = field.low > 0 ? field.low * (field.high / field.low) ** share : field.high * share ** 4;
-  return Math.min(field.high, Math.max(field.low, Number(value.toPrecision(3))));
-};
-const toPlace = (field, value) => {
-  const share = field.low > 0 ? Math.log(value / field.low) / Math.log(field.high / field.low) : (value / field.high) ** 0.25;
-  return Math.round(STEPS * Math.max(0, Math.min(1, share)));
-};
 
 export class Form extends Fields {
   constructor(declared, changed) {
@@ -44,26 +32,6 @@ export class Form extends Fields {
     const pressures = field.name === "pneumatics.driving_pressures_kPa";
     const main = MAIN.includes(field.name) || this.ofShapes.includes(field.name);
     return main && field.low !== null && (field.kind === "number" || pressures);
-  }
-
-  slider(field, entry) {
-    if (!this.slides(field)) return null;
-    const moved = (event, settled) => {
-      const value = toValue(field, Number(event.target.value));
-      const others = field.kind === "numbers" ? entry.input.value.split(",").map(Number).filter(Number.isFinite) : [];
-      // Of several driving pressures the slider moves the highest; those above it go.
-      const kept = others.sort((a, b) => a - b).slice(0, -1).filter((each) => each < value);
-      entry.input.value = [...kept, value].join(", ");
-      this.changed(field.name, typed(field, entry.input.value), settled);
-    };
-    return element("input", {
-      type: "range",
-      min: 0,
-      max: STEPS,
-      "aria-label": field.kind === "numbers" ? `Highest of the ${field.label.toLowerCase()}, ${field.unit}` : `${field.label}, ${field.unit}`,
-      oninput: (event) => moved(event, false),
-      onchange: (event) => moved(event, true),
-    });
   }
 
   /** Show the values of `state` over those of the last `answer`; the field that is being typed in is left alone. */

@@ -14,18 +14,18 @@ const HATCHES = [
   "M-2 2L2 -2M0 8L8 0M6 10L10 6M-2 6L2 10M0 0L8 8M6 -2L10 2",
 ];
 const hatch = (k) => `url(#map-hatch-${k % HATCHES.length})`;
-const svg = (tag, attributes, ...children) => element(`svg:${tag}`, attributes, ...children);
+export const svg = (tag, attributes, ...children) => element(`svg:${tag}`, attributes, ...children);
 
-function written(words, attributes) {
+export function written(words, attributes) {
   const made = svg("text", attributes);
   made.textContent = words;
   return made;
 }
 
-const listed = (points) => points.map((each) => each.map((one) => one.toFixed(1)).join()).join(" ");
+export const listed = (points) => points.map((each) => each.map((one) => one.toFixed(1)).join()).join(" ");
 
 /** Red, green and blue of a share from 0 to 1. */
-function tone(share) {
+export function tone(share) {
   const at = Math.max(0, Math.min(0.999999, share)) * (TONES.length - 1);
   const k = Math.floor(at);
   return TONES[k].map((low, n) => low + (at - k) * (TONES[k + 1][n] - low));

@@ -1,4 +1,4 @@
-// The present design on a map: a point that is dragged, put by a click, and moved by the arrow keys.
+// The present design on a map, or what touches a pad: a point that is dragged, put by a click, and moved by the arrow keys.
 import { element } from "./dom.js";
 
 const KEYS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -19,14 +19,14 @@ function rounded(axis, value) {
 }
 
 export class Point {
-  /** `moved(values)` while it is dragged; `put(values, settled)` where it was dropped, or moved by a key. */
-  constructor(moved, put) {
+  /** `moved(values)` while it is dragged; `put(values, settled)` where it was dropped, or moved by a key; `name` is its own. */
+  constructor(moved, put, name = "Present design on the map") {
     Object.assign(this, { moved, put, dragged: false });
     const drop = () => {
       if (this.dragged) this.put(this.picture.design, true);
       this.dragged = false;
     };
-    const words = { role: "slider", tabindex: 0, "aria-label": "Present design on the map, moved by the arrow keys", class: "design" };
+    const words = { role: "slider", tabindex: 0, "aria-label": `${name}, moved by the arrow keys`, class: "design" };
     const moves = { onpointerdown: (event) => this.take(event), onpointermove: (event) => this.drag(event), onpointerup: drop, onpointercancel: drop };
     this.mark = element(
       "svg:g",

@@ -23,7 +23,7 @@ const owed = new Owed();
 const files = new Versions();
 
 /** By the id of an area, the module that fills it when it is first shown. */
-const MODULES = { target: "./target.js", map: "./map.js", files: "./files.js", measure: "./measure.js" };
+const MODULES = { target: "./target.js", map: "./map.js", pads: "./pads.js", files: "./files.js", measure: "./measure.js" };
 
 /** What the areas are given: the design as it is now and its form, a function that opens another one, and the line of messages. */
 const desk = {
@@ -35,6 +35,7 @@ const desk = {
   show: (name) => parts.areas.show(name),
   words: (base) => parts.words.get(base) ?? base,
   version: () => parts.version,
+  pads: () => parts.pads,
   saved: (name) => saved(name),
 };
 
@@ -276,7 +277,7 @@ async function start() {
   const declared = await (await send("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
   parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
-  parts.version = declared.version;
+  Object.assign(parts, { version: declared.version, pads: declared.pads });
   parts.view = new View(byId("view"));
   byId("view-tools").hidden = !parts.view.renderer;
   parts.pressed = new Pressed((pressed) => {
@@ -294,6 +295,7 @@ async function start() {
   listen();
   parts.areas = new Areas(desk, MODULES);
   listenForFiles(desk);
+  if (location.pathname === "/pad") parts.areas.show("pads");
   update();
 }
 

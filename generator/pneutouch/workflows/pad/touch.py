@@ -1,6 +1,7 @@
 """The forward model of a pad at one driving pressure, from the design of its cell."""
 
 import hashlib
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from zipfile import BadZipFile
@@ -17,10 +18,13 @@ from pneutouch.spec.pad import PadCalibration
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.load import ResolvedPad
 
+Tabulate = Callable[[Sensor, float], CellTable]
+"""What makes a table that is not kept yet."""
 
-def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
+
+def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate | None = None) -> PadModel:
     """Tabulate the cell of a pad on its flange at a driving pressure, in 80 s of processor time at the first time; the
-    table is then kept among those of `pneutouch table`.
+    table is then kept among those of `pneutouch table`. ``made_by`` takes the place of `cell_table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a shape
     other than a hemisphere, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
@@ -34,7 +38,7 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float) -> PadModel:
         remedy = "give 0 or more"
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
     flange = pad.layout.cell.flange_width, pad.layout.cell.flange_thickness
-    table = _kept(cell.sensor.replace(flange=flange), driving_pressure_kPa * KPA)
+    table = _kept(cell.sensor.replace(flange=flange), driving_pressure_kPa * KPA, made_by)
     behind = ML * np.array(pad.dead_volumes_mL)
     gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
     return PadModel(np.array(pad.layout.places), table, gain)
@@ -59,14 +63,14 @@ def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibrat
     return replace(model, table=scaled, gain=model.gain * calibration.rise_factors), calibration
 
 
-def _kept(sensor: Sensor, pressure: float) -> CellTable:
+def _kept(sensor: Sensor, pressure: float, made_by: Tabulate | None = None) -> CellTable:
     """The table of a cell from the cache, else computed and kept there; one that cannot be read is made again."""
-    made_by = fingerprint("mechanics/harmonic", "mechanics/models/harmonic.py", "mechanics/touch/cell.py")
-    key = hashlib.sha256(repr((sensor, pressure, made_by)).encode()).hexdigest()[:16]
+    version = fingerprint("mechanics/harmonic", "mechanics/models/harmonic.py", "mechanics/touch/cell.py")
+    key = hashlib.sha256(repr((sensor, pressure, version)).encode()).hexdigest()[:16]
     path = cache_folder() / f"pad-{key}.npz"
     unreadable = suppress(OSError, ValueError, KeyError, BadZipFile)
     with unreadable, path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
         return CellTable.of({name: file[name] for name in file.files})
-    table = cell_table(sensor, pressure)
+    table = (made_by or cell_table)(sensor, pressure)
     store_arrays(path, table.arrays())
     return table
