@@ -24,7 +24,6 @@ from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.load import load_pad as resolved
 from pneutouch.workflows.pad.touch import pad_model
 
-
 _KEPT = 8
 """Number of tables of readers that are kept, each for one noise and model error."""
 
