@@ -215,7 +215,7 @@ def _dome(grid: Grid) -> list[str]:
         "*NODE",
         *(f"{n},{x:.12g},{y:.12g},{z:.12g}" for n, (x, y, z) in enumerate(grid.points, 1)),
         "*ELEMENT,TYPE=C3D20R,ELSET=WALL",
-        *(_element(n, nodes) for n, (nodes, _, _) in enumerate(cells, 1)),
+        *(element(n, nodes) for n, (nodes, _, _) in enumerate(cells, 1)),
         *listed("*NSET,NSET=FLAT", flat),
         *listed("*NSET,NSET=HELD", held),
         *listed("*NSET,NSET=INSIDE", inner),
@@ -242,11 +242,11 @@ def _object(press: HalfPress, nodes: int, cells: int) -> list[str]:
         sides = [(i + 1, k), (i + 2, k + 1), (i + 1, k + 2), (i, k + 1)]
         order = [(*p, 0) for p in corners] + [(*p, 2) for p in corners]
         order += [(*p, 0) for p in sides] + [(*p, 2) for p in sides] + [(*p, 1) for p in corners]
-        lines.append(_element(cells + n, [number[spot] for spot in order]))
+        lines.append(element(cells + n, [number[spot] for spot in order]))
     return [*lines, "*SURFACE,NAME=UNDER", "BODY,S1"]
 
 
-def _element(number: int, nodes: list[int]) -> str:
+def element(number: int, nodes: list[int]) -> str:
     """A cell of 20 nodes on two lines."""
     return f"{number}," + ",".join(map(str, nodes[:10])) + ",\n" + ",".join(map(str, nodes[10:]))
 

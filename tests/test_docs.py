@@ -13,6 +13,7 @@ from benchmarks import (
     coverage,
     hardening,
     off_axis_calculix,
+    pad_coupling,
     paper,
     peers,
     sway,
@@ -34,6 +35,7 @@ from pneutouch.bench.figures import BY_KEY
     [
         ("accuracy", None, accuracy.reduced),
         ("hardening", None, hardening.reduced),
+        ("pad_coupling", "reduced", lambda: pad_coupling.reduced(stored("pad_coupling")["scenes"])),
         ("sway", "summary", lambda: sway.reduced(stored("sway"), stored("sway-calculix"))),
         ("validation", "references", lambda: validation.references(stored("validation"))),
     ],
@@ -214,6 +216,20 @@ def test_presses_with_friction_agree_with_calculix_in_three_dimensions():
     assert len(data["rows"]) == len(calculix_friction_half.COEFFICIENTS) * calculix_friction_half.STEPS
     for figure in ("force_N", "rise_kPa"):
         assert max(map(abs, calculix_friction_half.differences(data, figure))) < 0.01, figure
+
+
+def test_cells_on_one_flange_answer_as_in_calculix_in_three_dimensions():
+    """Force and pressure rise within 3 %, the centre within 0.3 mm; a clamped base plane would miss that."""
+    data = stored("pad_coupling")["reduced"]
+    assert list(data) == list(pad_coupling.SCENES)
+    for name, scene in data.items():
+        for key in ("flange", "base"):
+            found = scene[key]
+            assert abs(found["force"]) < 0.03 and abs(found["centre_mm"]) < 0.3 and abs(found["rise"]) < 0.03, name
+        assert scene["without_flange"]["force"] > 0.06
+    for name in ("plate", "ball"):
+        beside = data[name]["neighbours"]
+        assert max(map(abs, beside.values())) < 0.02
 
 
 @pytest.mark.slow

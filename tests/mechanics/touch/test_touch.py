@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
+from benchmarks import pad_coupling
+from benchmarks.store import stored
 
 from pneutouch.evaluation import evaluate
 from pneutouch.mechanics.models.solid import solid_states
@@ -231,3 +235,19 @@ def test_presses_that_the_table_was_not_made_of_are_within_its_error(design, cha
             known = curve.values[inside, column]
             least = 0.1 * table.plates.values[0, 0, -1, column]
             assert np.abs(ours - known).max() <= TABLE_ERROR * max(known.max(), least)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: the comparison is not made")
+def test_three_cells_on_one_flange_answer_as_in_calculix():
+    """On a coarse mesh, under a ball between them; and our answer is the stored one."""
+    scene, table = pad_coupling.SCENES["ball"], pad_coupling.table_of("flange")
+    answer = scene.ours(table, 0.0)
+    theirs, _ = pad_coupling.pressed(scene, answer, "groove", pad_coupling.COARSE, table.apex)
+    ours, known = pad_coupling.our_figures(answer), stored("pad_coupling")["scenes"]["ball"]["ours"]["flange"]
+    assert len(theirs) == len(known) == 2
+    found = pad_coupling.change(ours, theirs)
+    assert abs(found["force"]) < 0.03 and abs(found["centre_mm"]) < 0.3 and abs(found["rise"]) < 0.03
+    for one, other in zip(ours, known, strict=True):
+        assert one["force_N"] == pytest.approx(other["force_N"], rel=1e-3)
+        assert one["rises_kPa"] == pytest.approx(other["rises_kPa"], rel=1e-3)
