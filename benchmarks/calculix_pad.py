@@ -29,8 +29,8 @@ _CORNERS, _SIDES = [(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 0), (2, 1), (1, 2), (0
 _ORDER = [(*p, k) for p, k in [(p, k) for at in (_CORNERS, _SIDES) for k in (0, 2) for p in at]]
 _ORDER += [(*p, 1) for p in _CORNERS]
 """Steps along i, j and k to the nodes of a cell of 20 nodes, as in `Grid.cells`."""
-_INSIDE, _OUTSIDE = [0, 1, 5, 4, 8, 17, 12, 16], [3, 2, 6, 7, 10, 18, 14, 19]
-"""Nodes of the faces of a cell on its low and its high side of j, which are P3 and S5."""
+_INSIDE = [0, 1, 5, 4, 8, 17, 12, 16]
+"""Nodes of the face of a cell on its low side of j, the face 3 of CalculiX; that on the high side is its face 5."""
 _SAME = 1e-6
 """Nodes nearer than this are one, mm."""
 _REACH, _FACES = 4.0, 8
