@@ -28,6 +28,7 @@ from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import pad_reader
+from pneutouch.workflows.select.pads import SIMILAR
 
 PITCH, RADIUS, WALL, PRESSURE_KPA, NOISE_KPA, COUNT = 9.0, 2.78, 1.0, 12.0, 0.002, 10_000
 CELL = {
@@ -47,6 +48,7 @@ def cell_sensor() -> Sensor:
 
 def main() -> None:
     table, seconds = timed(lambda: cell_table(cell_sensor(), PRESSURE_KPA * KPA))
+    np.savez_compressed(SIMILAR, **{name: values.astype(np.float32) for name, values in table.arrays().items()})
     places = np.array(PadTable(cell="cell", layout="ring:7", pitch_mm=PITCH).places)
     pad = PadModel(places, table, np.ones(len(places)))
     rows = {kind: _row(pad, kind) for kind in KINDS}
