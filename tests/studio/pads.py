@@ -12,7 +12,8 @@ from pneutouch.output.new_pad import new_pad
 from pneutouch.workflows.pad.load import load_pad
 from pneutouch.workflows.pad.touch import pad_model
 
-NAME, PRESSURE = "tip", "8.4"
+NAME, PRESSURE = "tip", "4.2"
+"""The pad, and the driving pressure that its form begins with."""
 _POINTS = 33
 
 

@@ -68,7 +68,7 @@ def test_answers_are_those_of_python(ask, changes, kind):
 def test_what_is_not_known_is_null_and_beyond_the_range_says_so(ask):
     away = ask("/api/pad/touch", **BALL | {"touch.depth_mm": "0"}).json()
     assert away["contact"]["force_N"] == [0.0] and away["read"]["kind"] == ["none"]
-    assert away["contact"]["centre_mm"] == away["read"]["centre_mm"] == [[None, None]]
+    assert away["read"]["centre_mm"] == [[None, None]] and away["read"]["curvature_per_mm"] == [None]
     beyond = ask("/api/pad/touch", **PLATE | {"touch.slope_x": "0.3", "touch.slope_y": "0.3"}).json()
     assert beyond["contact"]["force_N"][0] > 0.0 and beyond["contact"]["inside"] == [False]
 

@@ -41,7 +41,7 @@ class PadPage extends JobPage {
     this.results = element("div", { tabindex: -1 }, this.status, this.under, this.begin, element("div", { role: "alert" }, this.problems), this.card);
     this.names = element("select", { onchange: () => this.open(this.names.value) }, ...page.pads().map((name) => element("option", {}, name)));
     this.rows = element("div");
-    root.replaceChildren(element("form", { "aria-label": "Pad", onsubmit: (event) => event.preventDefault() }, element("div", { class: "field long" }, element("label", {}, "Pad", this.names)), this.rows), this.results);
+    root.replaceChildren(this.results, element("form", { "aria-label": "Pad", onsubmit: (event) => event.preventDefault() }, element("div", { class: "field long" }, element("label", {}, "Pad", this.names)), this.rows));
     this.line = new Line("/api/pad/touch", (...given) => this.answered(...given), (_, error) => this.failed(error));
     this.open(new URLSearchParams(location.search).get("name") ?? this.names.value);
   }
@@ -108,7 +108,7 @@ class PadPage extends JobPage {
     else if (!content.read) this.tabulate();
     else {
       this.problem([]);
-      this.report("");
+      this.report(`${base} at ${this.text("touch.pressure")} kPa. Move the object by the pointer, or by the arrow keys (with Shift by ten steps).`);
       this.picture.show({ answer: content });
       this.figures(content);
     }
@@ -136,13 +136,14 @@ class PadPage extends JobPage {
   /** What is read beside what is there. */
   figures({ contact, read }) {
     const [[x, y], [[across, skew], [, up]]] = [read.centre_mm[0], read.centre_covariance_mm2[0]];
+    const centre = contact.force_N[0] ? contact.centre_mm[0] : [null, null];
     const bend = this.picture.ball ? 1 / this.picture.ball[0] : 0;
     const rows = [
       ["Force, N", contact.force_N[0], read.force_N[0], read.force_uncertainty_N[0]],
-      ["Centre x, mm", contact.centre_mm[0][0], x, Math.sqrt(across)],
-      ["Centre y, mm", contact.centre_mm[0][1], y, Math.sqrt(up)],
+      ["Centre x, mm", centre[0], x, Math.sqrt(across)],
+      ["Centre y, mm", centre[1], y, Math.sqrt(up)],
       ["Curvature, 1/mm", bend, read.curvature_per_mm[0], read.curvature_uncertainty_per_mm[0]],
-    ].map(([name, is, found, spread]) => [name, short(is, 3), short(found, 3), found === null ? "–" : `${short(found - HALF * spread, 3)} to ${short(found + HALF * spread, 3)}`]);
+    ].map(([name, is, found, spread]) => [name, short(is, 3), short(found, 3), found === null ? "–" : `${short(name.startsWith("Centre") ? found - HALF * spread : Math.max(0, found - HALF * spread), 3)} to ${short(found + HALF * spread, 3)}`]);
     const row = (tag, cells) => element("tr", {}, ...cells.map((each) => element(tag, {}, each)));
     this.table.replaceChildren(element("thead", {}, row("th", ["", "is", "read", "95 % interval"])), element("tbody", {}, ...rows.map((cells) => row("td", cells))));
     const beyond = contact.force_N[0] ? "A cell is pressed beyond its range: what it reads there is not predicted. " : "No cell is touched. ";

@@ -82,8 +82,8 @@ export class PadPicture {
 
   /** The true centre of the force as a cross; the one that is read as a dot, with the ellipse that holds 95 %. */
   centres({ contact, read }) {
-    const [[true_], [found], [spread]] = [contact.centre_mm, read.centre_mm, read.centre_covariance_mm2];
-    const cross = true_[0] === null ? [] : twice("path", { d: "M-7 -7L7 7M-7 7L7 -7", transform: `translate(${this.at(true_)})` });
+    const [[middle], [found], [spread]] = [contact.centre_mm, read.centre_mm, read.centre_covariance_mm2];
+    const cross = !contact.force_N[0] ? [] : twice("path", { d: "M-7 -7L7 7M-7 7L7 -7", transform: `translate(${this.at(middle)})` });
     if (found[0] === null) return cross;
     const [[a, b], [, d]] = spread;
     const away = Math.hypot(0.5 * (a - d), b);
