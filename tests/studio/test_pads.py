@@ -106,7 +106,7 @@ def test_a_cell_that_no_table_covers_is_refused(ask, home):
     cell = home / "designs" / "tip-cell.toml"
     cell.write_text(cell.read_text().replace('# shape = "hemisphere"', 'shape = "disc"'))
     assert ask("/api/pad").status_code == 200
-    answer = ask("/api/pad/touch", **BALL)
+    answer = ask("/api/pad/touch", **BALL | {"touch.depth_mm": "0.5"})
     assert answer.status_code == 422 and "hemisphere" in answer.json()["problems"][0]["message"]
 
 

@@ -73,5 +73,5 @@ def test_no_rule_of_accessibility_is_broken_and_nothing_is_too_wide(width, dark,
 
 def test_a_pad_that_is_not_known_is_an_error_in_words(pages, studio):
     page = pages.open(f"{studio.home}pad?name=no-such-pad", storage_state=studio.profile())
-    until(page, f"document.querySelector('#area-pads .problems').textContent.includes({NAME!r})")
+    until(page, f"document.querySelector('#area-pads .problems')?.textContent.includes({NAME!r})")
     assert NAME in page.locator("#area-pads select option").all_text_contents()

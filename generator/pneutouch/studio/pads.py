@@ -102,10 +102,11 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
     # Rounded inwards.
     radius, steep = pad.layout.cell.inner_radius, math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3
     least, most = math.ceil(1e3 * BALLS[0] * radius) / 1e3, math.floor(1e3 * BALLS[-1] * radius) / 1e3
-    pressures = [f"{each:g}" for each in pad.scene.design.pneumatics.driving_pressures_kPa]
-    first = next((each for each in pressures if float(each) > 0.0), pressures[0])
+    pressures_kPa = pad.scene.design.pneumatics.driving_pressures_kPa
+    first = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0])
+    pressures = [f"{one_kPa:g}" for one_kPa in pressures_kPa]
     rows: list[tuple[Any, ...]] = [
-        ("pressure", "Driving pressure", "kPa", None, None, first, "Those of the cell's design.", pressures),
+        ("pressure", "Driving pressure", "kPa", None, None, f"{first:g}", "Those of the cell's design.", pressures),
         ("object", "Object", "", None, None, "ball", "What touches the pad.", ["ball", "plate"]),
         (
             "depth_mm",
@@ -133,7 +134,7 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
 
 
 def _value(field: FormField, values: Mapping[str, str | None]) -> Any:
-    """What the form says in a field, its start where nothing is given. Raises InputError at the field."""
+    """The value of a field of the form, its start where nothing is given. Raises InputError at the field."""
     text, names = values.get(field.name), [one["name"] for one in field.options]
     value: Any = field.default if text is None else toml_value(text)
     if field.low is None or field.high is None:

@@ -145,7 +145,7 @@ class PadPage extends JobPage {
       ["Curvature, 1/mm", bend, read.curvature_per_mm[0], read.curvature_uncertainty_per_mm[0]],
     ].map(([name, is, found, spread]) => [name, short(is, 3), short(found, 3), found === null ? "–" : `${short(name.startsWith("Centre") ? found - HALF * spread : Math.max(0, found - HALF * spread), 3)} to ${short(found + HALF * spread, 3)}`]);
     const row = (tag, cells) => element("tr", {}, ...cells.map((each) => element(tag, {}, each)));
-    this.table.replaceChildren(element("thead", {}, row("th", ["", "is", "read", "95 % interval"])), element("tbody", {}, ...rows.map((cells) => row("td", cells))));
+    this.table.replaceChildren(element("thead", {}, row("th", ["figure", "true", "read", "95 % interval"])), element("tbody", {}, ...rows.map((cells) => row("td", cells))));
     const beyond = contact.force_N[0] ? "A cell is pressed beyond its range: what it reads there is not predicted. " : "No cell is touched. ";
     this.words.textContent = `${contact.inside[0] ? "" : beyond}${KINDS[read.kind[0]]}`;
     this.words.dataset.kind = read.kind[0];

@@ -19,7 +19,7 @@ from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.load import ResolvedPad
 
 Tabulate = Callable[[Sensor, float], CellTable]
-"""What makes a table that is not kept yet."""
+"""Maker of a table that is not kept yet."""
 
 
 def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate | None = None) -> PadModel:
