@@ -13,7 +13,7 @@ import numpy as np
 import pneutouch as pt
 
 designs = [pt.load_pad(name) for name in ("fingertip-pad", "jaw-pad", "palm-pad")]
-figure, axes = plt.subplots(2, 3, figsize=(9, 6), layout="constrained", width_ratios=[27, 36, 45])
+figure, axes = plt.subplots(2, 3, figsize=(9, 5.4), layout="constrained", width_ratios=[27, 36, 45])
 
 for design, (above, below) in zip(designs, axes.T, strict=True):
     touch = design.touch(driving_pressure_kPa=12)

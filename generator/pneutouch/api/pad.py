@@ -127,8 +127,8 @@ class PadTouch(Shown):
         noise_kPa: float,
         model_error: float = TABLE_ERROR / 3.0,
     ) -> PadResolution:
-        """Standard deviations of force and place that readings of balls leave, of which nothing else is known: their
-        Fisher information. Where one cell is touched the region of the place is a curve, and shorter than this says."""
+        """Standard deviations of force and place that readings of balls leave, of which nothing is known but which cell
+        is near: by their Fisher information."""
         x, y, radius, depth = _columns(x_mm=x_mm, y_mm=y_mm, radius_mm=radius_mm, depth_mm=depth_mm)
         balls = np.column_stack([x, y, self._model.table.radius / radius, depth])
         return PadResolution(*resolution(self._model, "ball", balls, noise_kPa * KPA, model_error))

@@ -23,12 +23,18 @@ class Resolution(NamedTuple):
 def resolution(
     model: PadModel, kind: ObjectKind, objects: Array, noise: float, model_error: float = TABLE_ERROR / 3.0
 ) -> Resolution:
-    """Resolution at objects (m, k) as of `answer_of`, none of which is known but by the readings and by what objects
-    there are. ``noise`` is the standard deviation of a gauge, MPa; ``model_error`` as of `reader_table`.
+    """Resolution at objects (m, k) as of `answer_of`, of which nothing is known but the readings, what objects there
+    are, and which cell is nearest to a ball. ``noise`` is the standard deviation of a gauge, MPa; ``model_error`` as of
+    `reader_table`.
 
     Information is that of a linearised reading: where one cell is touched, the true region is a curve (see
     `export.reader.pad_reading`)."""
-    spread = random_objects(model, kind, _RANDOM, np.random.default_rng(0)).std(axis=0)
+    random = random_objects(model, kind, _RANDOM, np.random.default_rng(0))
+    if kind == "ball":
+        # Which cell reads most tells which is near.
+        nearest = np.hypot(*(random[:, None, :2] - model.places).transpose(2, 0, 1)).argmin(axis=1)
+        random[:, :2] -= model.places[nearest]
+    spread = random.std(axis=0)
     known, size = answer_of(model, kind, objects), objects.shape[1]
     deviation = np.hypot(noise, model_error * known.rise.max(axis=1))
     slopes, turned = [], []
