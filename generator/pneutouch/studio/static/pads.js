@@ -57,7 +57,7 @@ class PadPage extends JobPage {
     this.names.value = name;
     this.report("Opening the pad.", true);
     this.card.hidden = true;
-    this.rows.replaceChildren();
+    for (const each of [this.rows, this.words, this.table, this.problems]) each.replaceChildren();
     try {
       const { status, content } = await post("/api/pad", { base: name, values: {} });
       if (this.name !== name) return;

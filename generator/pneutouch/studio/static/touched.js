@@ -58,7 +58,7 @@ export class PadPicture {
     this.svg.setAttribute("viewBox", `0 0 ${this.size} ${this.size}`);
     this.put(this.design);
     const rises = this.answer?.contact.pressure_rises_kPa[0] ?? this.pad.places_mm.map(() => 0);
-    const greatest = Math.max(...rises, 1e-3);
+    const greatest = Math.max(...rises, 0.1);
     this.top = Math.max(this.top ?? 0, rounds(0, 2 * greatest, 4).find((each) => each >= greatest));
     const cells = this.pad.places_mm.flatMap((place, k) => {
       const [share, [x, y]] = [rises[k] / this.top, this.at(place)];
