@@ -28,7 +28,7 @@ from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import pad_reader
-from pneutouch.workflows.select.pads import SIMILAR
+from pneutouch.workflows.pad.select_pads import SIMILAR
 
 PITCH, RADIUS, WALL, PRESSURE_KPA, NOISE_KPA, COUNT = 9.0, 2.78, 1.0, 12.0, 0.002, 10_000
 CELL = {

@@ -23,6 +23,7 @@ SHIPPED = (
     "graded-dome",
     "long-tube",
     "paper-dome",
+    "small-cell",
     "soft-pad",
     "stiff-dome",
 )

@@ -9,8 +9,8 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.mechanics.touch import cell as cells
 from pneutouch.units import KPA
-from pneutouch.workflows.select import pads
-from pneutouch.workflows.select.pads import PITCH, PadTarget, select_pads, similar_cell
+from pneutouch.workflows.pad import select_pads as pads
+from pneutouch.workflows.pad.select_pads import PITCH, PadTarget, select_pads, similar_cell
 from tests.mechanics.touch.test_touch import CELL
 from tests.running import in_process
 

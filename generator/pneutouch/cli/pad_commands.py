@@ -12,7 +12,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.values import plain_number
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.select.pads import PadTarget, PadTrial
+    from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
 
 _OURS = ("design", "data", "set_", "calibration", "out", "json", "seed", "save", "replace")
 """Parameters of these commands that hold for pads too."""
@@ -111,7 +111,7 @@ def select_a_pad(
     context: typer.Context, area: str, wanted: Mapping[str, float | None], gauge: str | None, charts: Path | None
 ) -> None:
     """Find the pad with the fewest cells that reads force and place as well as wanted; exit 1 if there is none."""
-    from pneutouch.workflows.select.pads import PadTarget, select_pads, write_pad_chart
+    from pneutouch.workflows.pad.select_pads import PadTarget, select_pads, write_pad_chart
 
     _refuse_others(context, f"--pad {area}", (*_WANTED, "pad", "gauge", "charts"))
     try:

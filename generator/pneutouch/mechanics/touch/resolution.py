@@ -13,7 +13,7 @@ _STEP, _RANDOM = 1e-3, 2000
 """Step of the differences in spreads of each parameter, and number of random objects that give these spreads."""
 
 
-class Resolution(NamedTuple):
+class TouchResolution(NamedTuple):
     """Standard deviations for m contacts: of force (m,), N; of its centre, of both directions together (m,), mm."""
 
     force: Array
@@ -22,7 +22,7 @@ class Resolution(NamedTuple):
 
 def resolution(
     model: PadModel, kind: ObjectKind, objects: Array, noise: float, model_error: float = TABLE_ERROR / 3.0
-) -> Resolution:
+) -> TouchResolution:
     """Resolution at objects (m, k) as of `answer_of`, of which nothing is known but the readings, what objects there
     are, and which cell is nearest to a ball. ``noise`` is the standard deviation of a gauge, MPa; ``model_error`` as of
     `reader_table`.
@@ -46,4 +46,4 @@ def resolution(
     jacobian, along = np.stack(slopes, axis=-1), np.stack(turned, axis=-1)
     covariance = np.linalg.inv(np.einsum("mni,mnj->mij", jacobian, jacobian) + np.eye(size))
     square = np.einsum("mai,mij,maj->ma", along, covariance, along)
-    return Resolution(np.sqrt(square[:, 0]), np.sqrt(square[:, 1] + square[:, 2]))
+    return TouchResolution(np.sqrt(square[:, 0]), np.sqrt(square[:, 1] + square[:, 2]))

@@ -34,8 +34,7 @@ const desk = {
   report: (words, busy = false) => report(words, busy),
   show: (name) => parts.areas.show(name),
   words: (base) => parts.words.get(base) ?? base,
-  version: () => parts.version,
-  pads: () => parts.pads,
+  version: () => parts.version, pads: () => parts.pads,
   saved: (name) => saved(name),
 };
 
@@ -276,10 +275,9 @@ async function start() {
   await unlock();
   const declared = await (await send("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
-  parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
-  Object.assign(parts, { version: declared.version, pads: declared.pads });
-  parts.view = new View(byId("view"));
-  byId("view-tools").hidden = !parts.view.renderer;
+  const words = new Map(declared.designs.map((one) => [one.name, one.words]));
+  Object.assign(parts, { words, version: declared.version, pads: declared.pads });
+  byId("view-tools").hidden = !(parts.view = new View(byId("view"))).renderer;
   parts.pressed = new Pressed((pressed) => {
     if (page.quick) drawSection(page.quick.drawing, page.pinned?.drawing, pressed);
     parts.view.press(pressed);

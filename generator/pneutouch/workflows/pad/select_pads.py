@@ -1,4 +1,4 @@
-"""Which pad meets a wanted resolution: patterns of similar cells over an area, each read back under random balls."""
+"""Pads for a wanted resolution: patterns of similar cells over an area, each read back under random balls."""
 
 import math
 from functools import cache
