@@ -202,7 +202,7 @@ class Pad(Shown):
         return np.array(self._pad.layout.places)
 
     def touch(self, driving_pressure_kPa: float) -> PadTouch:
-        """The pad at a driving pressure; takes a minute and a half. Raises InputError as `pad_model` does."""
+        """The pad at a driving pressure; takes minutes the first time. Raises InputError as `pad_model` does."""
         return PadTouch(pad_model(self._pad, driving_pressure_kPa))
 
     def _head(self) -> str:

@@ -169,7 +169,7 @@ def greatest_lean(depth: float, outer: float, ball_radius: Array) -> Array:
 
 
 def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
-    """The table of a cell at one driving pressure (MPa), by 24 presses of ``harmonic``: 30 s, on a flange 80 s.
+    """The table of a cell at one driving pressure (MPa), by 24 presses of ``harmonic``: 30 s, on a flange 80 to 220 s.
 
     The depth is that of the sensor's test, or where the range of its central plate ends or, on a flange, its wall lies
     down. Raises BeyondLimitError, and ComputationError for a press that finds no equilibrium."""

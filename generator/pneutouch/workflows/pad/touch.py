@@ -23,8 +23,9 @@ Tabulate = Callable[[Sensor, float], CellTable]
 
 
 def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate | None = None) -> PadModel:
-    """Tabulate the cell of a pad on its flange at a driving pressure, in 80 s of processor time at the first time; the
-    table is then kept among those of `pneutouch table`. ``made_by`` takes the place of `cell_table`.
+    """Tabulate the cell of a pad on its flange at a driving pressure, in one to four minutes of processor time at
+    the first time, most for thin walls; the table is then kept among those of `pneutouch table`. ``made_by`` stands in
+    for `cell_table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a shape
     other than a hemisphere, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
