@@ -14,17 +14,13 @@ from pneutouch.output.new_pad import new_pad
 from pneutouch.units import KPA
 from pneutouch.workflows.pad import touch as touching
 from pneutouch.workflows.pad.load import load_pad as resolved
+from tests.pads import coarse_home
 
 
 @pytest.fixture(scope="module")
 def touch(tmp_path_factory):
     """A pad of three cells, tabulated by coarse presses."""
-    home = tmp_path_factory.mktemp("pads")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PNEUTOUCH_HOME", str(home))
-        patch.setenv("XDG_CACHE_HOME", str(home))
-        for name, value in (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6)):
-            patch.setattr(cells, name, value)
+    with coarse_home(tmp_path_factory) as home:
         new_pad("tip", home / "designs", "row:3", 9.0)
         yield pt.load_pad("tip").touch(12)
 

@@ -9,25 +9,21 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.touch import cell as cells
 from pneutouch.output.new_pad import new_pad
 from pneutouch.workflows.pad import campaign, measured
 from pneutouch.workflows.pad.load import load_pad
 from pneutouch.workflows.pad.touch import calibrated_model, pad_model
+from tests.pads import coarse_home
 from tests.running import in_process
 
-AT = "pneumatics.driving_pressures_kPa=[0,12]"
+CHANGED = "pneumatics.driving_pressures_kPa"
+AT = f"{CHANGED}=[0,12]"
 
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
     """A home with a pad of three cells, tabulated by coarse presses."""
-    folder = tmp_path_factory.mktemp("pads")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PNEUTOUCH_HOME", str(folder))
-        patch.setenv("XDG_CACHE_HOME", str(folder))
-        for name, value in (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6)):
-            patch.setattr(cells, name, value)
+    with coarse_home(tmp_path_factory) as folder:
         new_pad("tip", folder / "designs", "row:3", 9.0)
         new_pad("other", folder / "designs", "row:3", 10.0)
         yield folder
@@ -135,6 +131,10 @@ def test_from_the_plan_to_the_reader_at_the_first_try(home, tmp_path):
     assert model.under_balls(*press).force[0] / bare.under_balls(*press).force[0] == pytest.approx(
         truth["force_factor"], rel=0.06
     )
+    bent = model.under_balls(*press).rise / np.maximum(bare.under_balls(*press).rise, 1e-12)
+    assert bent[0, 1] == pytest.approx(truth["rise_factors"][1], abs=0.08)
+    assert np.allclose(model.gain / bare.gain, truth["rise_factors"], atol=0.1)
+    assert not np.allclose(model.gain, bare.gain, atol=1e-3)
     spec = importlib.util.spec_from_file_location("tip_reader", tmp_path / "outputs/tip-reader/tip_reader.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -156,5 +156,41 @@ def test_what_is_not_of_this_pad_is_refused(home, folder, tmp_path):
         save_calibration(kept.model_copy(update={"force_factor": 1.5}), "first", replace=False)
     with pytest.raises(InputError, match="elsewhere"):
         calibrated_model(load_pad("other"), "first")
-    result = in_process(["plan", "tip", "--specimens", "2"], tmp_path)
-    assert result.returncode != 0 and "--specimens" in result.stderr
+    for words in (
+        ["plan", "tip", "--specimens", "2"],
+        ["plan", "tip", "--calibration", "first"],
+        ["plan", "tip", "--json"],
+        ["characterize", str(folder), "--set", AT],
+        ["export-reader", "tip", "--json"],
+    ):
+        result = in_process(words, tmp_path)
+        assert result.returncode == 2 and words[2] in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "scale"), [("force_N", 9.80665), ("pressure", 6.894757), ("depth_mm", -1.0), ("pressure", 0.145)]
+)
+def test_another_unit_or_sign_is_refused_and_not_fitted(folder, key, scale):
+    def change(columns):
+        for name in columns:
+            if name.startswith(key):
+                columns[name] *= scale
+
+    for run in ("stage", "hand") if key != "depth_mm" else ("stage",):
+        changed(folder / f"runs/{run}.csv", change)
+    with pytest.raises(InputError) as caught:
+        measured.fitted(measured.read_campaign(folder))
+    assert caught.value.remedy or key == "depth_mm"
+
+
+def test_a_pad_given_by_its_path_is_found_again(home, tmp_path):
+    place = tmp_path / "elsewhere.toml"
+    place.write_text((home / "designs/pads/tip.toml").read_text())
+    made = campaign.simulate_pad(campaign.plan_pad(load_pad(str(place), {CHANGED: [0.0, 12.0]})), tmp_path, 1)
+    file = made / campaign.CAMPAIGN
+    file.write_text(file.read_text().replace("assignments = []", f"assignments = ['{AT}']"))
+    assert measured.read_campaign(made).pad.name == "elsewhere"
+
+
+def test_a_name_that_no_file_can_have_is_none_of_a_pad(tmp_path):
+    assert in_process(["characterize", "a" * 300], tmp_path).returncode == 2

@@ -247,10 +247,7 @@ class Library:
             cell = read_toml(pads[name]).get("pad", {}).get("cell")
             remedy = f"give its cell, {cell}" if isinstance(cell, str) else None
             raise InputError(
-                "is a pad; it can be built and checked, this command needs the design of one sensor",
-                key="design",
-                value=name,
-                remedy=remedy,
+                "is a pad, and this command needs the design of one sensor", key="design", value=name, remedy=remedy
             )
         example, remedy = example_remedy(name), f"give the name or the path of a design.{nearest(name, paths)}"
         remedy = f"{example}; or {remedy}" if example else remedy

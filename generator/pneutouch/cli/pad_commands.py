@@ -1,6 +1,6 @@
 """Pads in the commands of one sensor: plan, simulate, characterize, calibrate and export-reader."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +14,6 @@ from pneutouch.spec.values import plain_number
 if TYPE_CHECKING:
     from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
 
-_OURS = ("design", "data", "set_", "calibration", "out", "json", "seed", "save", "replace")
-"""Parameters of these commands that hold for pads too."""
 _WANTED = {"force_error": 10.0, "place_error": 1.0, "gauges": 12, "ball": 8.0}
 """Errors, gauges and ball of a pad that is selected, where they are not given: our choice."""
 _SIZES = ("inner_radius", "wall_thickness")
@@ -40,7 +38,7 @@ def plan_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: P
     from pneutouch.workflows.pad.campaign import plan_pad, write_pad_plan
     from pneutouch.workflows.pad.load import load_pad
 
-    _refuse_others(context, name)
+    _refuse_others(context, name, "design", "set_", "out")
     with bar("tabulating a cell"):
         folder = write_pad_plan(plan_pad(load_pad(name, changes(set_))), out, changes(set_))
     echo(str(folder))
@@ -54,7 +52,7 @@ def simulate_a_pad(context: typer.Context, name: str, set_: list[str] | None, ou
     from pneutouch.workflows.pad.campaign import CAMPAIGN, plan_pad, simulate_pad
     from pneutouch.workflows.pad.load import load_pad
 
-    _refuse_others(context, name)
+    _refuse_others(context, name, "design", "set_", "out", "seed")
     given = changes(set_)
     if is_planned(name):
         campaign: PadCampaign = validate(PadCampaign, read_toml(Path(name) / CAMPAIGN), f"{name}/{CAMPAIGN}")
@@ -70,7 +68,7 @@ def characterize_a_pad(context: typer.Context, data: Path, out: Path, *, json: b
     from pneutouch.workflows.pad.measured import fitted, read_campaign
     from pneutouch.workflows.pad.measured_files import write_figures
 
-    _refuse_others(context, str(data))
+    _refuse_others(context, str(data), "data", "out", "json")
     with bar("fitting the readings"):
         measured = read_campaign(data)
         record, folder = write_figures(measured, fitted(measured), out)
@@ -84,12 +82,13 @@ def calibrate_a_pad(context: typer.Context, data: Path, out: Path, save: str | N
     from pneutouch.workflows.pad.measured import calibration_of, fitted, read_campaign
     from pneutouch.workflows.pad.measured_files import save_calibration, write_figures
 
-    _refuse_others(context, str(data))
+    _refuse_others(context, str(data), "data", "out", "save", "replace")
     with bar("fitting the readings"):
         measured = read_campaign(data)
         fit = fitted(measured)
+        record, folder = write_figures(measured, fit, out)
         path = save_calibration(calibration_of(measured, fit), save or measured.pad.name, replace=replace)
-    echo(f"{filled_text('pad.txt.j2', record=write_figures(measured, fit, out)[0])}\n\n{path}")
+    echo(f"{filled_text('pad.txt.j2', record=record)}\n\n{folder}\n{path}")
     given = set_words(measured.campaign.assignments)
     report_next("export-reader", measured.campaign.pad, "--calibration", path.stem, *given)
 
@@ -99,7 +98,7 @@ def export_a_pad(context: typer.Context, name: str, set_: list[str] | None, cali
     from pneutouch.workflows.pad.export import write_pad_reader
     from pneutouch.workflows.pad.load import load_pad
 
-    _refuse_others(context, name)
+    _refuse_others(context, name, "design", "set_", "calibration", "out")
     with bar("tabulating a cell"):
         folder = write_pad_reader(load_pad(name, changes(set_)), calibration, out)
     echo(str(folder))
@@ -113,7 +112,7 @@ def select_a_pad(
     """Find the pad with the fewest cells that reads force and place as well as wanted; exit 1 if there is none."""
     from pneutouch.workflows.pad.select_pads import PadTarget, select_pads, write_pad_chart
 
-    _refuse_others(context, f"--pad {area}", (*_WANTED, "pad", "gauge", "charts"))
+    _refuse_others(context, f"--pad {area}", *_WANTED, "pad", "gauge", "charts")
     try:
         width, depth = (plain_number(text) for text in area.lower().split("x"))
     except ValueError:
@@ -148,9 +147,9 @@ def _row(one: "PadTrial", target: "PadTarget") -> list[str]:
     return [one.layout, *texts, "yes" if one.meets(target) else ""]
 
 
-def _refuse_others(context: typer.Context, name: str, ours: Sequence[str] = _OURS) -> None:
-    """Raise InputError for an option that was given and does not hold for pads."""
+def _refuse_others(context: typer.Context, name: str, *ours: str) -> None:
+    """Raise InputError for an option that was given and is none of ``ours``, those that hold for pads."""
     for one in context.command.params:
         source = context.get_parameter_source(one.name or "")
         if one.name not in ours and source is not None and source.name == "COMMANDLINE":
-            raise InputError(f"{max(one.opts, key=len)} is of one sensor, not of a pad", file=name)
+            raise InputError(f"{max(one.opts, key=len)} holds for one sensor, not for a pad", file=name)

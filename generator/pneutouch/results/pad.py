@@ -100,6 +100,6 @@ class PadFigures:
     rise_error: float
     """Error left in the rises, root mean square, over the greatest of a reading."""
     force_error: float
-    """Relative error left in the forces, root mean square."""
+    """Error left in the forces, root mean square, over that of the forces."""
     cells: tuple[MeasuredCell, ...]
     """Cells by number."""

@@ -128,7 +128,6 @@ class PadCampaign(Table):
     driving_pressure_kPa: float = Field(ge=0, le=1000, description="Driving pressure of every cell.")
     ball_radius_mm: float = Field(gt=0, le=1000, description="Radius of the ball.")
     force_resolution_N: float = number(0.02, unit="N", low=1e-6, high=100, help="Resolution of the force sensor.")
-    lab: str = Field(default="", max_length=200, description="Who measured, where.")
     simulated: bool = Field(default=False, description="True for data of `simulate`, which nobody measured.")
     runs: list[PadRun] = Field(min_length=1, description="Recordings.")
 

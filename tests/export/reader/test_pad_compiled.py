@@ -11,13 +11,13 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.export.reader.pad_reading import PadForceReader
 from pneutouch.export.reader.pad_render import PadReaderSource, pad_reader_files
-from pneutouch.mechanics.touch import cell as cells
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
 from pneutouch.mechanics.touch.reader_table import STRAIGHT, reader_table
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from tests.mechanics.touch.test_touch import CELL, PRESSURE
+from tests.pads import coarse_table
 
 STRICT = ["-Wall", "-Wextra", "-Werror", "-std=c99", "-pedantic"]
 NOISE_KPA = 0.002
@@ -49,11 +49,8 @@ int main(void)
 
 
 @pytest.fixture(scope="module")
-def pad():
-    with pytest.MonkeyPatch.context() as patch:
-        for name, value in (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6)):
-            patch.setattr(cells, name, value)
-        table = cells.cell_table(evaluate("paper-dome", CELL).sensor, PRESSURE)
+def pad(tmp_path_factory):
+    table = coarse_table(evaluate("paper-dome", CELL).sensor, PRESSURE, tmp_path_factory)
     return PadModel(
         np.array(PadTable(cell="c", layout="ring:7", pitch_mm=9.0).places), table, np.linspace(0.95, 1.05, 7)
     )

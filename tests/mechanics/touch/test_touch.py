@@ -21,6 +21,7 @@ from pneutouch.mechanics.touch.resolution import resolution
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import find_fault, pad_reader
+from tests.pads import coarse_table
 
 PRESSURE = 12.0 * KPA
 NOISE = 0.002 * KPA
@@ -40,13 +41,8 @@ def sensor():
 
 
 @pytest.fixture(scope="module")
-def coarse(sensor):
-    """A table by coarse presses, in a quarter of the time."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cells, "_ORDER", 4)
-        patch.setattr(cells, "_CELLS", 8)
-        patch.setattr(cells, "_STEPS", 6)
-        return cell_table(sensor, PRESSURE)
+def coarse(sensor, tmp_path_factory):
+    return coarse_table(sensor, PRESSURE, tmp_path_factory)
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,6 @@ STARTS = (5, 2)
 """Number of balls and of plates that are fitted to a reading."""
 STEPS = 4
 """Steps of each fit."""
-TOUCHED = 4.0
-"""Rise in standard deviations of the gauge from which a cell counts as touched."""
 MISFIT = 5.0
 """Greatest mean square of the residuals by cell, in standard deviations, of an object that explains a reading."""
 SURE = 0.95
@@ -75,7 +73,7 @@ class PadForceReader:
         if not all(math.isfinite(rise) for rise in rises):
             return TouchReading("outside")
         noise, most = self.table["noise_kPa"], max(rises)
-        if most <= TOUCHED * noise:
+        if most <= self.table["touched_kPa"]:
             self.zero_kPa = [zero + FOLLOW * rise for zero, rise in zip(self.zero_kPa, rises, strict=True)]
             return TouchReading("none", 0.0, 0.0)
         deviation = math.hypot(noise, self.table["model_error"] * most)
@@ -89,8 +87,7 @@ class PadForceReader:
 
     def _nearest(self, kind: int, rises: Sequence[float]) -> list[list[float]]:
         """Stored objects of a kind that read most like this."""
-        unit = TOUCHED * self.table["noise_kPa"]
-        scaled = [math.asinh(rise / unit) for rise in rises]
+        scaled = [math.asinh(rise / self.table["touched_kPa"]) for rise in rises]
         best: list[tuple[float, list[float]]] = []
         for start in self.table["starts"][kind]:
             pairs = zip(scaled, start["scaled_rises"], self.used, strict=True)

@@ -34,7 +34,6 @@ def pad_reader_files(table: Mapping[str, Any], source: PadReaderSource) -> dict[
         of_kind=pad_reading.STARTS,
         fits=sum(pad_reading.STARTS),
         steps=pad_reading.STEPS,
-        touched=pad_reading.TOUCHED,
         follow=pad_reading.FOLLOW,
         misfit=pad_reading.MISFIT,
         sure=pad_reading.SURE,

@@ -21,6 +21,8 @@ STRAIGHT = 0.003
 _OF_EACH = 40
 """Number of random objects from which each of those is chosen."""
 _SEED = 1
+_TOUCHED = 4.0
+"""Rise in standard deviations of the gauge from which a cell counts as touched."""
 
 
 def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0) -> Mapping[str, Any]:
@@ -38,6 +40,7 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
         "places_mm": _single(model.places),
         "gains": _single(model.gain),
         "noise_kPa": _single(noise_kPa),
+        "touched_kPa": _single(_TOUCHED * noise_kPa),
         "model_error": _single(np.hypot(model_error, STRAIGHT)),
         "radius_mm": _single(table.radius),
         "outer_mm": _single(table.outer),
@@ -59,7 +62,7 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
 
 def _starts(model: PadModel, kind: ObjectKind, objects: Array, count: int, noise_kPa: float) -> list[dict[str, Any]]:
     """Objects whose readings are as far apart as can be, with their rises on the scale on which the nearest is."""
-    scaled = np.arcsinh(answer_of(model, kind, objects).rise / KPA / (4.0 * noise_kPa))
+    scaled = np.arcsinh(answer_of(model, kind, objects).rise / KPA / (_TOUCHED * noise_kPa))
     return [{"object": _single(objects[k]), "scaled_rises": _single(scaled[k])} for k in _apart(scaled, count)]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.formats import versioned
+from pneutouch.mechanics.gauge_reading import PAPER_NOISE
 from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
@@ -17,6 +18,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.spec.toml_text import assignments, toml_text
 from pneutouch.tables.csv_table import columns_csv
 from pneutouch.units import KPA
+from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.touch import pad_model, pad_pressure_kPa
 
@@ -78,7 +80,7 @@ def write_pad_plan(plan: PadPlan, out: Path, changes: Changes | None = None) -> 
     }
     sheet = filled("pad_plan.md.j2", plan=plan, campaign=campaign, channels=channels(count), file=CAMPAIGN)
     files = {"plan.md": sheet.encode(), "presses.csv": columns_csv(expected), CAMPAIGN: _text(campaign)}
-    return write_folder(out / name, with_manifest(files, name, {"pad": plan.pad.file.model_dump(mode="json")}))
+    return write_folder(out / name, with_manifest(files, name, inputs(plan.pad)))
 
 
 def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = None) -> Path:
@@ -111,7 +113,7 @@ def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = 
         files[run.file] = columns_csv({key: of_kind[key] for key in heads[0 if run.kind == "stage" else 3 :]})
     truth = {"force_factor": force, "rise_factors": rises, "stage_zero_mm": shift.tolist(), "seed": seed}
     files["pad-truth.json"] = json_bytes(versioned("pad-truth", truth))
-    return write_folder(out / name, with_manifest(files, name, {"pad": plan.pad.file.model_dump(mode="json")}))
+    return write_folder(out / name, with_manifest(files, name, {**inputs(plan.pad), "seed": seed}))
 
 
 def channels(count: int) -> list[str]:
@@ -122,12 +124,14 @@ def channels(count: int) -> list[str]:
 def noise_kPa(pad: ResolvedPad) -> float:
     """Standard deviation of a reading of the cell's gauge, kPa; where it is unknown, of the paper's."""
     scatter = reading_of(pad.worst.scene).scatter
-    return (0.1 * KPA if scatter is None else scatter) / KPA
+    return (PAPER_NOISE if scatter is None else scatter) / KPA
 
 
 def _campaign(plan: PadPlan, changes: Changes | None, runs: list[PadRun], simulated: bool = False) -> PadCampaign:
+    pad = plan.pad
+    known = pad.library.paths("pads").get(pad.name) == Path(pad.where)
     return PadCampaign(
-        pad=plan.pad.name,
+        pad=pad.name if known else str(Path(pad.where).absolute()),
         assignments=assignments(changes or {}),
         driving_pressure_kPa=plan.model.table.driving_pressure / KPA,
         ball_radius_mm=plan.radius,

@@ -13,6 +13,7 @@ from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.output.files import digest
+from pneutouch.spec.files import is_file
 from pneutouch.spec.pad import PadCalibration, PadCampaign, PadRun
 from pneutouch.spec.read import parse_changes, read_toml, validate
 from pneutouch.tables.read import whole
@@ -32,6 +33,8 @@ logarithms of the factors of force and rise, and of the stage's zero, mm."""
 _CLEAR, _POOR, _LOST = 0.15, 0.08, 0.5
 """Gain in correlation by which channels count as swapped, remaining error from which a fault is looked for, and factor
 of a cell over that of the others below which it is lost."""
+_FARTHEST, _UNEXPLAINED = 3.0, 0.3
+"""Factor of force or rise, up or down, and remaining error, from which readings are refused."""
 _STARTS, _NOISES = 20_000, 1.2
 """Number of random balls among which a fit by hand starts; and variance of a reading less its zero, the mean of five,
 over that of a reading."""
@@ -64,7 +67,8 @@ class MeasuredPad(NamedTuple):
 
 class PadFit(NamedTuple):
     """A pad in hand over its prediction: factors of force and of rises (n,) with standard uncertainties, zero
-    of the stage (3,), mm; errors left, root mean square: of rises over the greatest of a reading, and of forces."""
+    of the stage (3,), mm; errors left, root mean squares over those: of rises over the greatest of a reading, and of
+    forces."""
 
     force_factor: float
     of_force_factor: float
@@ -77,7 +81,7 @@ class PadFit(NamedTuple):
 
 def is_pad_campaign(path: Path) -> bool:
     """True for the folder of a pad's campaign, or its file."""
-    return path.name == CAMPAIGN or (path / CAMPAIGN).is_file()
+    return path.name == CAMPAIGN or is_file(path / CAMPAIGN)
 
 
 def read_campaign(path: Path) -> MeasuredPad:
@@ -145,9 +149,11 @@ def fitted(measured: MeasuredPad) -> PadFit:
     share = (readings.rise.size + readings.force.size) / free
     left = share * np.square(off).mean() - _NOISES * fit.noise**2
     rise_error = float(np.sqrt(max(left, 0.0) / np.square(readings.rise.max(axis=1)).mean()))
-    force_error = float(np.sqrt(np.mean((answer.force * factors[0] / readings.force - 1.0) ** 2)))
+    off_N = answer.force * factors[0] - readings.force
+    force_error = float(np.sqrt(np.square(off_N).mean() / np.square(readings.force).mean()))
     if rise_error > _POOR or factors[1:].min() < _LOST * np.median(factors[1:]):
         _check_fault(measured, np.flatnonzero(factors[1:] < _LOST * np.median(factors[1:])) + 1)
+    _check_sizes(measured, float(factors[0]), float(np.median(factors[1:])), rise_error)
     return PadFit(
         float(factors[0]),
         float(of_factors[0]),
@@ -193,6 +199,21 @@ def _check_fault(measured: MeasuredPad, silent: Indices) -> None:
         problem = "the cell leaks or is clogged" if fault.kind == "lost" else f"swapped with {names[-1]}"
         remedy = "mend it, or leave it out of the reader" if fault.kind == "lost" else "exchange the two columns"
         raise InputError(problem, file=measured.folder / CAMPAIGN, key=names[0], remedy=remedy)
+
+
+def _check_sizes(measured: MeasuredPad, force: float, rise: float, rise_error: float) -> None:
+    """Raise InputError for forces or rises so far from the predicted ones that they are not those of this pad, or of
+    which the prediction leaves most unexplained."""
+    file, first = measured.folder / CAMPAIGN, channels(1)[0]
+    for key, factor, unit in (("force_N", force, "N"), (first, rise, "kPa")):
+        if not 1.0 / _FARTHEST < factor < _FARTHEST:
+            problem = f"{factor:.3g} times what is predicted, in every cell"
+            raise InputError(problem, file=file, key=key, remedy=f"give it in {unit}, and the pad, resin and ball used")
+    if rise_error > _UNEXPLAINED:
+        problem = (
+            f"{rise_error:.0%} of the rises are not explained by a ball of {measured.campaign.ball_radius_mm:g} mm"
+        )
+        raise InputError(problem, file=file, key=first, remedy="check the places, the depth's sign, and the ball")
 
 
 class _Fit:

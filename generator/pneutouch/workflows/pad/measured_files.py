@@ -12,7 +12,10 @@ from pneutouch.results.record import plain
 from pneutouch.spec.pad import PadCalibration
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import plain_name
+from pneutouch.wording import rounded
 from pneutouch.workflows.pad.measured import MeasuredPad, PadFit
+
+_DIGITS = 6
 
 
 def write_figures(measured: MeasuredPad, fit: PadFit, out: Path) -> tuple[PadFigures, Path]:
@@ -37,6 +40,7 @@ def write_figures(measured: MeasuredPad, fit: PadFit, out: Path) -> tuple[PadFig
             MeasuredCell(k, (x, y), float(factor), float(of)) for k, ((x, y), factor, of) in enumerate(cells, start=1)
         ),
     )
+    record = rounded(record, _DIGITS, 1e-9)
     page = filled("pad_figures.md.j2", record=record).encode()
     files = {"pad-figures.json": json_bytes(versioned("pad-figures", plain(record))), "report.md": page}
     return record, write_folder(out / name, with_manifest(files, name, {"digest": measured.digest}))

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.mechanics.gauge_reading import PAPER_NOISE, gauge_reading
-from pneutouch.mechanics.touch.cell import CellTable
+from pneutouch.mechanics.touch.cell import BALLS, CellTable
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.mechanics.touch.reader_table import reader_table
@@ -18,7 +18,7 @@ from pneutouch.output.files import CHARTS_MANIFEST, replace_own
 from pneutouch.report.chart import Chart, Panel, PlotLine, drawn_svg
 from pneutouch.report.style import FAINT
 from pneutouch.spec.pad import MOST_CELLS, PadTable
-from pneutouch.units import KPA, ML
+from pneutouch.units import KPA, ML, STANDARD_ATMOSPHERE
 from pneutouch.workflows.pad.fault import pad_reader
 
 SIMILAR = Path(__file__).with_name("similar_cell.npz")
@@ -26,7 +26,6 @@ SIMILAR = Path(__file__).with_name("similar_cell.npz")
 similar to it (`python -m benchmarks.pads` writes it)."""
 PITCH, BEHIND = 9.0, 1.5 * ML
 """Pitch of that table's pad, mm, and gas behind its cell, mm3, which a larger cell has alike."""
-_AMBIENT = 101.325 * KPA
 _PITCHES, _CONTACTS, _LOUD = (6.0, 40.0), 48, 20.0
 """Least and greatest pitch tried, mm; number of balls that each pad reads, and rise in noises from which they count."""
 
@@ -84,7 +83,7 @@ def select_pads(target: PadTarget) -> list[PadTrial]:
             key=lambda n: max(target.area[0] * n / cells, target.area[1] / n),
         )
         pitch = max(target.area[0] * rows / cells, target.area[1] / rows)
-        tabulated = 1.0 <= target.ball / (similar_cell().radius * pitch / PITCH) <= 20.0
+        tabulated = BALLS[0] <= target.ball / (similar_cell().radius * pitch / PITCH) <= BALLS[-1]
         # More cells of the same pitch only reach beyond the area.
         finer = not grids or pitch < grids[-1][1] * (1.0 - 1e-9)
         if _PITCHES[0] <= pitch <= _PITCHES[1] and tabulated and finer:
@@ -92,7 +91,7 @@ def select_pads(target: PadTarget) -> list[PadTrial]:
     if not grids:
         pitches = "{:g} to {:g} mm".format(*_PITCHES)
         problem = f"no grid of at most {target.gauges} cells, {pitches} apart, covers this under such a ball"
-        remedy = "give another area, more gauges, or a ball of 1 to 20 inner radii, a third of the pitch"
+        remedy = "give another area, more gauges, or a ball of 1 to 20 inner radii of a cell, each a third of the pitch"
         raise InputError(problem, key="pad", value="{:g}x{:g}".format(*target.area), remedy=remedy)
     return [_trial(target, *grid, noise) for grid in grids]
 
@@ -126,14 +125,14 @@ def _trial(target: PadTarget, layout: str, pitch: float, noise: float) -> PadTri
 def _noise(name: str | None) -> float:
     """Standard deviation of a reading of a gauge, MPa; of the paper's without a name, or where it is unknown."""
     gauge = None if name is None else Library.default().load("gauges", name, key="gauge")
-    scatter = gauge_reading(gauge, _AMBIENT).scatter
+    scatter = gauge_reading(gauge, STANDARD_ATMOSPHERE).scatter
     return PAPER_NOISE if scatter is None else scatter
 
 
 def write_pad_chart(trials: list[PadTrial], target: PadTarget, folder: Path) -> None:
     """Write ``pad-trade-off.svg``: both errors over the number of cells, with what is wanted. Raises InputError as
     `replace_own`."""
-    cells = [one.cells for one in trials]
+    cells = tuple(one.cells for one in trials)
     panels = []
     for y, key, scale, wanted in (
         ("median error of force  (%)", "force_error", 100.0, target.force_error),
@@ -142,6 +141,6 @@ def write_pad_chart(trials: list[PadTrial], target: PadTarget, folder: Path) -> 
         errors = [scale * getattr(one, key) for one in trials]
         line = PlotLine(cells, errors, marker="o", filled=True)
         limit = PlotLine([cells[0], cells[-1]], [scale * wanted] * 2, "wanted", tone=FAINT, width=3.0, over=2)
-        panels.append(Panel("number of cells over the same area", y, (limit, line), zero="y"))
+        panels.append(Panel("number of cells over the same area", y, (limit, line), zero="y", ticks=cells))
     svg = drawn_svg(Chart(tuple(panels), (150.0, 75.0), across=2)).encode()
     replace_own({folder / "pad-trade-off.svg": svg}, folder / CHARTS_MANIFEST, "charts")
