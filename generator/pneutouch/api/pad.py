@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +23,6 @@ from pneutouch.workflows.pad.fault import find_fault, pad_reader
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.load import load_pad as resolved
 from pneutouch.workflows.pad.touch import pad_model
-
-_KEPT = 8
-"""Number of tables of readers that are kept, each for one noise and model error."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ class PadTouch(Shown):
     """A pad at one driving pressure, whose cells have been tabulated: contacts forwards and readings backwards."""
 
     def __init__(self, model: PadModel) -> None:
-        self._model, self._tables = model, dict[tuple[float, float], Mapping[str, Any]]()
+        self._model, self._table = model, lru_cache(maxsize=8)(partial(reader_table, model))
 
     @property
     def driving_pressure_kPa(self) -> float:
@@ -159,14 +156,6 @@ class PadTouch(Shown):
         kind, force_N, of_force_N, x, y, xx, xy, yy, bend, of_bend = map(np.array, zip(*contacts, strict=True))
         spread = np.stack([xx, xy, xy, yy], axis=-1).reshape(-1, 2, 2)
         return PadEstimate(kind, force_N, of_force_N, np.column_stack([x, y]), spread, bend, of_bend)
-
-    def _table(self, noise_kPa: float, model_error: float) -> Mapping[str, Any]:
-        key = noise_kPa, model_error
-        if key not in self._tables:
-            if len(self._tables) >= _KEPT:
-                self._tables.clear()
-            self._tables[key] = reader_table(self._model, *key)
-        return self._tables[key]
 
     def fault(
         self, pressure_rises_kPa: ArrayLike, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0

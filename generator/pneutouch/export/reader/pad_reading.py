@@ -69,7 +69,8 @@ class PadForceReader:
 
     def read(self, gauges_kPa: Sequence[float]) -> TouchReading:
         """The contact, by the pressures of all cells in the order of their numbers."""
-        rises = [gauge - zero if used else 0.0 for gauge, zero, used in self._cells(gauges_kPa)]
+        cells = zip(gauges_kPa, self.zero_kPa, self.used, strict=True)
+        rises = [gauge - zero if used else 0.0 for gauge, zero, used in cells]
         if not all(math.isfinite(rise) for rise in rises):
             return TouchReading("outside")
         noise, most = self.table["noise_kPa"], max(rises)
@@ -81,9 +82,6 @@ class PadForceReader:
             [self._fitted(kind, start, rises, deviation) for start in self._nearest(kind, rises)] for kind in (0, 1)
         ]
         return self._told(*fits)
-
-    def _cells(self, gauges_kPa: Sequence[float]) -> "zip[tuple[float, float, bool]]":
-        return zip(gauges_kPa, self.zero_kPa, self.used, strict=True)
 
     def _nearest(self, kind: int, rises: Sequence[float]) -> list[list[float]]:
         """Stored objects of a kind that read most like this."""
@@ -121,7 +119,9 @@ class PadForceReader:
                 damping *= 5.0
         rows = [solved(normal, row) for row in turned]
         covariance = [[sum(a * b for a, b in zip(one, other, strict=True)) for other in rows] for one in turned]
-        log_weight = -0.5 * cost - 0.5 * math.log(determinant(normal)) - math.log(STARTS[kind])
+        log_weight = (
+            -0.5 * cost - sum(math.log(row[i]) for i, row in enumerate(factors(normal))) - math.log(STARTS[kind])
+        )
         bend = at[2] if kind == 0 else 0.0
         return _Fit(log_weight, cost, [*answer[1:4], bend], covariance, answer[4])
 
@@ -251,11 +251,6 @@ def solved(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> list[fl
     for i in reversed(range(size)):
         out[i] = (out[i] - sum(lower[k][i] * out[k] for k in range(i + 1, size))) / lower[i][i]
     return out
-
-
-def determinant(matrix: Sequence[Sequence[float]]) -> float:
-    """Determinant of a positive definite matrix."""
-    return math.prod(row[i] for i, row in enumerate(factors(matrix))) ** 2
 
 
 def factors(matrix: Sequence[Sequence[float]]) -> list[list[float]]:

@@ -15,12 +15,11 @@ _JUDGED, _MENDED = 20, 0.8
 
 class PadFault(NamedTuple):
     """A fault: cells ``lost`` or ``swapped``, by their numbers from 1, and the share of the readings that are explained
-    with it and as they are."""
+    with it."""
 
     kind: Literal["none", "lost", "swapped", "unknown"]
     cells: tuple[int, ...]
     explained: float
-    before: float
 
 
 def find_fault(table: Mapping[str, Any], rises_kPa: Array) -> PadFault:
@@ -31,16 +30,16 @@ def find_fault(table: Mapping[str, Any], rises_kPa: Array) -> PadFault:
     loud_kPa = rises_kPa[np.argsort(rises_kPa.sum(axis=1))[::-1][:_JUDGED]]
     before = _explained(table, loud_kPa)
     if before >= SURE:
-        return PadFault("none", (), before, before)
+        return PadFault("none", (), before)
     count, found = rises_kPa.shape[1], []
     for one, other in combinations(range(count), 2):
         turned = loud_kPa.copy()
         turned[:, [one, other]] = loud_kPa[:, [other, one]]
-        found.append(PadFault("swapped", (one + 1, other + 1), _explained(table, turned), before))
+        found.append(PadFault("swapped", (one + 1, other + 1), _explained(table, turned)))
     # A reading without one cell is explained more easily: of equals a swap is the fault.
-    lost = [PadFault("lost", (k,), _explained(table, loud_kPa, [k]), before) for k in range(1, count + 1)]
+    lost = [PadFault("lost", (k,), _explained(table, loud_kPa, [k])) for k in range(1, count + 1)]
     best = max([*found, *lost], key=lambda fault: fault.explained)
-    return best if best.explained >= max(_MENDED, before + 0.2) else PadFault("unknown", (), before, before)
+    return best if best.explained >= max(_MENDED, before + 0.2) else PadFault("unknown", (), before)
 
 
 def pad_reader(table: Mapping[str, Any], left_out: Sequence[int] = ()) -> PadForceReader:

@@ -154,15 +154,8 @@ def fitted(measured: MeasuredPad) -> PadFit:
     if rise_error > _POOR or factors[1:].min() < _LOST * np.median(factors[1:]):
         _check_fault(measured, np.flatnonzero(factors[1:] < _LOST * np.median(factors[1:])) + 1)
     _check_sizes(measured, float(factors[0]), float(np.median(factors[1:])), rise_error)
-    return PadFit(
-        float(factors[0]),
-        float(of_factors[0]),
-        factors[1:],
-        of_factors[1:],
-        found.x[1 + count : 4 + count],
-        rise_error,
-        force_error,
-    )
+    (force, *_), (of_force, *_), shift = factors.tolist(), of_factors.tolist(), found.x[1 + count : 4 + count]
+    return PadFit(force, of_force, factors[1:], of_factors[1:], shift, rise_error, force_error)
 
 
 def _check_order(measured: MeasuredPad) -> None:
@@ -192,7 +185,7 @@ def _check_fault(measured: MeasuredPad, silent: Indices) -> None:
     """Raise InputError for cells that are ``silent``, by their numbers from 1; and if a lost cell or swapped channels
     explain readings that the prediction does not."""
     table = reader_table(measured.model, noise_kPa(measured.pad), _POOR)
-    lost = PadFault("lost", tuple(silent.tolist()), 1.0, 0.0)
+    lost = PadFault("lost", tuple(silent.tolist()), 1.0)
     fault = lost if silent.size else find_fault(table, measured.readings.rise / KPA)
     if fault.kind in ("lost", "swapped"):
         names = [channels(len(measured.model.places))[k - 1] for k in fault.cells]

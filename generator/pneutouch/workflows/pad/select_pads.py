@@ -107,17 +107,14 @@ def _trial(target: PadTarget, layout: str, pitch: float, noise: float) -> PadTri
     balls = balls[(np.abs(balls[:, :2]) <= half).all(axis=1)]
     known = model.under_balls(balls[:, :2], np.full(len(balls), target.ball), balls[:, 3])
     loud = np.flatnonzero(known.inside & (known.rise.max(axis=1) > _LOUD * noise))[:_CONTACTS]
-    if not loud.size:
-        return PadTrial(layout, len(places), pitch, math.inf, math.inf, 0.0)
     reader, random = pad_reader(reader_table(model, noise / KPA)), np.random.default_rng(3)
     rises_kPa = (known.rise[loud] + noise * random.standard_normal((loud.size, len(places)))) / KPA
     told = [reader.read(cells_kPa) for cells_kPa in rises_kPa.tolist()]
-    force = np.array([one.force_N for one in told])
-    away = np.array([(one.x_mm, one.y_mm) for one in told]) - known.centre[loud]
-    off = np.abs(force / known.force[loud] - 1.0)
+    force, x, y = np.array([(one.force_N, one.x_mm, one.y_mm) for one in told]).reshape(-1, 3).T
     read = np.isfinite(force)
     if not read.any():
         return PadTrial(layout, len(places), pitch, math.inf, math.inf, 0.0)
+    off, away = np.abs(force / known.force[loud] - 1.0), np.column_stack([x, y]) - known.centre[loud]
     errors = float(np.median(off[read])), float(np.median(np.hypot(*away[read].T)))
     return PadTrial(layout, len(places), pitch, *errors, float(read.mean()))
 
