@@ -71,6 +71,20 @@ def test_a_plate_is_read_as_the_plate_it_is(touch):
     assert set(read.kind) <= {"plate", "either"}
 
 
+def test_slopes_of_a_plate_and_the_turn_of_a_cylinder_are_read_with_their_uncertainties(touch):
+    plate = touch.plate([0.02, -0.03], 0.01, [1.0, 1.2])
+    read = touch.read(plate.pressure_rises_kPa, noise_kPa=0.002, model_error=1e-4)
+    sure = read.kind == "plate"
+    off = read.slope - np.array([[0.02, 0.01], [-0.03, 0.01]])
+    assert sure.any() and (np.abs(off) <= 4.0 * read.slope_uncertainty)[sure].all()
+    bar = touch.cylinder(1.0, 0.5, 10.0, 8.0, 1.5)
+    assert (bar.forces_N > 0.0).all() and np.allclose(touch.cylinder(1.0, 0.5, 190.0, 8.0, 1.5).forces_N, bar.forces_N)
+    read = touch.read(bar.pressure_rises_kPa, noise_kPa=0.002, model_error=1e-4)
+    known = read.kind == "cylinder"
+    assert np.isnan(read.turn_deg[~known]).all() and np.isnan(read.slope[known]).all()
+    assert read.force_N[0] == pytest.approx(bar.force_N[0], abs=4.0 * read.force_uncertainty_N[0])
+
+
 def test_a_cell_left_out_is_not_used(touch):
     pressed = touch.plate(0.0, 0.0, 1.1)
     spoilt = pressed.pressure_rises_kPa * np.array([1.0, 0.0, 1.0])
@@ -84,6 +98,8 @@ def test_a_cell_left_out_is_not_used(touch):
         (lambda touch: touch.ball(0, 0, 0.5, 1), "radius_mm"),
         (lambda touch: touch.ball([0, 1], [0, 1, 2], 8, 1), "x_mm"),
         (lambda touch: touch.plate(0, float("nan"), 1), "slope_y"),
+        (lambda touch: touch.cylinder(0, 0, 0, 500, 1), "radius_mm"),
+        (lambda touch: touch.cylinder(0, 0, float("nan"), 8, 1), "turn_deg"),
         (lambda touch: touch.read([1.0, 2.0], 0.002), "pressure_rises_kPa"),
         (lambda touch: touch.read([1.0, 2.0, 0.0], 0.0), "noise_kPa"),
         (lambda touch: touch.read([1.0, 2.0, 0.0], 0.002, left_out=[4]), "left_out"),

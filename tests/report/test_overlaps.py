@@ -47,7 +47,8 @@ def test_no_label_lies_over_a_curve_or_another_label(name, sheet_of):
     with overlaps() as (found, labels):
         described(sheet)
     assert found == []
-    assert sum(labels) > 150
+    # The sheet of one driving pressure has the fewest.
+    assert sum(labels) > 120
 
 
 def test_the_check_finds_a_label_over_a_curve_and_over_another():

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.touch.cell import BALLS, SHARES, TILTS, CellTable, greatest_lean
+from pneutouch.mechanics.touch.cell import RADII, SHARES, TILTS, CellTable, greatest_lean
 from pneutouch.output.new_pad import new_pad
 from pneutouch.workflows.pad.load import load_pad
 from pneutouch.workflows.pad.touch import pad_model
@@ -26,18 +26,14 @@ def kept_pad(home: Path) -> None:
 def made_up(sensor: Sensor, pressure: float) -> CellTable:
     """A table by rules of thumb: force and rise by powers of the travel, sideways forces by the lean."""
     radius, outer, depth = sensor.dome.inner_radius, sensor.dome.shape.outer_radius, 2.0
-    sizes, travel = radius * np.array(BALLS)[:, None], np.linspace(0.0, depth, _POINTS)
+    sizes, travel = radius * np.array(RADII)[:, None], np.linspace(0.0, depth, _POINTS)
     lean = greatest_lean(depth, outer, sizes) * np.array(SHARES)
     arrays = {"numbers": np.array([radius, outer, depth, outer, 150.0, pressure])}
+    down = (outer + sizes) * np.sqrt(1 - lean**2) - sizes
+    beside = np.log(RADII), np.array(SHARES), lean
     for kind, rows, columns, sine, stiff, first in (
-        (
-            "balls",
-            np.log(BALLS),
-            np.array(SHARES),
-            lean,
-            sizes / (sizes + outer),
-            (outer + sizes) * np.sqrt(1 - lean**2) - sizes,
-        ),
+        ("balls", *beside, sizes / (sizes + outer), down),
+        ("cylinders", *beside, np.sqrt(sizes / (sizes + outer)), down),
         (
             "plates",
             np.zeros(1),

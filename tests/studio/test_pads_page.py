@@ -57,6 +57,8 @@ def test_a_ball_is_dragged_and_bars_and_estimate_follow(at_pad):
     page.get_by_role("slider", name="Object on the pad").focus()
     page.keyboard.press("Shift+ArrowRight")
     until(page, f"{_BARS} !== {moved!r}")
+    page.locator("#field-touch-object").select_option("cylinder")
+    until(page, "!document.getElementById('field-touch-turn_deg').closest('.field').hidden")
     page.locator("#field-touch-object").select_option("plate")
     until(page, "!document.getElementById('field-touch-slope_x').closest('.field').hidden")
     assert page.locator("#field-touch-radius_mm").is_hidden()

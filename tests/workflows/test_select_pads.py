@@ -80,7 +80,10 @@ def test_the_shipped_cell_scales_as_cells_do(size):
     assert table.apex == pytest.approx(made.apex, rel=2e-3) and table.cavity == pytest.approx(made.cavity, rel=2e-3)
     depth = np.linspace(0.3, 0.8, 4) * min(made.depth, table.depth)
     press = np.full(4, 6.0 * size), np.full(4, 0.8 * size)
-    ours, theirs = table.under_ball(*press, table.apex - depth), made.under_ball(*press, made.apex - depth)
+    ours, theirs = (
+        table.under_round("balls", *press, table.apex - depth),
+        made.under_round("balls", *press, made.apex - depth),
+    )
     assert np.allclose(ours.force, theirs.force, rtol=0.02) and np.allclose(ours.rise, theirs.rise, rtol=0.02)
 
 

@@ -62,12 +62,14 @@ class PadEstimate:
     """Objects that touch a pad, by m readings; NaN where something is not known.
 
     Attributes:
-        kind: ``none``, ``ball``, ``plate``, ``either`` where they cannot be told apart, ``outside`` where neither
-            explains the readings or a cell is beyond its range (m,).
+        kind: ``none``, ``ball``, ``plate``, ``cylinder``, ``either`` where these cannot be told apart, ``outside``
+            where none explains the readings or a cell is beyond its range (m,).
         force_N, force_uncertainty_N: Force and its standard uncertainty (m,).
         centre_mm, centre_covariance_mm2: Centre of the force as of `PadContact` (m, 2), and its covariance (m, 2, 2).
         curvature_per_mm, curvature_uncertainty_per_mm: Curvature of the object, 0 of a plate, and its standard
             uncertainty (m,).
+        slope, slope_uncertainty: Slopes of a plate along x and y, and their standard uncertainties (m, 2).
+        turn_deg, turn_uncertainty_deg: Angle of a cylinder's axis to x, 0 to 180, and its standard uncertainty (m,).
     """
 
     kind: Array
@@ -77,6 +79,10 @@ class PadEstimate:
     centre_covariance_mm2: Array
     curvature_per_mm: Array
     curvature_uncertainty_per_mm: Array
+    slope: Array
+    slope_uncertainty: Array
+    turn_deg: Array
+    turn_uncertainty_deg: Array
 
 
 class PadTouch(Shown):
@@ -97,18 +103,28 @@ class PadTouch(Shown):
 
     @property
     def ball_radii_mm(self) -> tuple[float, float]:
-        """Least and greatest radius of a ball."""
+        """Least and greatest radius of a ball or cylinder."""
         return self._model.radii
 
     def ball(self, x_mm: ArrayLike, y_mm: ArrayLike, radius_mm: ArrayLike, depth_mm: ArrayLike) -> PadContact:
         """Balls with axes at x and y, pressed until their lowest points are ``depth_mm`` below the tops of the domes;
         numbers or arrays of one length. Raises InputError for a radius beyond `ball_radii_mm`."""
         x, y, radius, depth = _columns(x_mm=x_mm, y_mm=y_mm, radius_mm=radius_mm, depth_mm=depth_mm)
-        low, high = self.ball_radii_mm
-        for value in radius[(radius < low) | (radius > high)]:
-            remedy = f"give {low:.3g} to {high:.4g} mm; a larger one is a plate"
-            raise InputError("is not tabulated", key="radius_mm", value=float(value), remedy=remedy)
+        self._check(radius)
         return _contact(self._model.under_balls(np.column_stack([x, y]), radius, depth))
+
+    def cylinder(
+        self, x_mm: ArrayLike, y_mm: ArrayLike, turn_deg: ArrayLike, radius_mm: ArrayLike, depth_mm: ArrayLike
+    ) -> PadContact:
+        """Endless lying cylinders, or bars with edges of that radius: axes through x and y at ``turn_deg`` to x; the
+        rest as of `ball`. Raises InputError for a radius beyond `ball_radii_mm`."""
+        x, y, turn, radius, depth = _columns(
+            x_mm=x_mm, y_mm=y_mm, turn_deg=turn_deg, radius_mm=radius_mm, depth_mm=depth_mm
+        )
+        self._check(radius)
+        normal = np.radians(turn + 90.0)
+        axis = np.column_stack([normal, x * np.cos(normal) + y * np.sin(normal)])
+        return _contact(self._model.under_cylinders(axis, radius, depth))
 
     def plate(self, slope_x: ArrayLike, slope_y: ArrayLike, depth_mm: ArrayLike) -> PadContact:
         """Plates that rise by slopes along x and y, pressed to ``depth_mm`` below the domes' tops at x = y = 0."""
@@ -153,9 +169,11 @@ class PadTouch(Shown):
             raise InputError("no such cells", key="left_out", value=numbers, remedy=f"give some of 1 to {count}")
         reader = pad_reader(self._table(noise_kPa, model_error), numbers)
         contacts = [reader.read(cells_kPa) for cells_kPa in rises_kPa.tolist()]
-        kind, force_N, of_force_N, x, y, xx, xy, yy, bend, of_bend = map(np.array, zip(*contacts, strict=True))
+        kind, force_N, of_force_N, *rest = map(np.array, zip(*contacts, strict=True))
+        x, y, xx, xy, yy, bend, of_bend, *slopes, turn, of_turn = rest
         spread = np.stack([xx, xy, xy, yy], axis=-1).reshape(-1, 2, 2)
-        return PadEstimate(kind, force_N, of_force_N, np.column_stack([x, y]), spread, bend, of_bend)
+        lies = np.column_stack(slopes[:2]), np.column_stack(slopes[2:]), np.degrees(turn), np.degrees(of_turn)
+        return PadEstimate(kind, force_N, of_force_N, np.column_stack([x, y]), spread, bend, of_bend, *lies)
 
     def fault(
         self, pressure_rises_kPa: ArrayLike, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0
@@ -166,6 +184,13 @@ class PadTouch(Shown):
         self.read(rises_kPa[:1], noise_kPa, (), model_error)
         found = find_fault(self._table(noise_kPa, model_error), rises_kPa)
         return found.kind, found.cells
+
+    def _check(self, radius: Array) -> None:
+        """Raise InputError for a radius that is not tabulated."""
+        low, high = self.ball_radii_mm
+        for value in radius[(radius < low) | (radius > high)]:
+            remedy = f"give {low:.3g} to {high:.4g} mm; a larger one is a plate"
+            raise InputError("is not tabulated", key="radius_mm", value=float(value), remedy=remedy)
 
     def _head(self) -> str:
         return f"pad of {len(self._model.places)} cells at {self.driving_pressure_kPa:g} kPa, to {self.depth_mm:.3g} mm"

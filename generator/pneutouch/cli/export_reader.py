@@ -58,7 +58,7 @@ def export_reader(
     from pneutouch.workflows.export_reader import make_reader, write_reader
 
     if is_pad(design):
-        export_a_pad(context, design, set_, calibration, out)
+        export_a_pad(context, design, set_, calibration, simulator, out)
         return
     options = model_options(model or (None if tolerance else "auto"), tolerance)
     aged = None if age is None else years_of(age, "age")

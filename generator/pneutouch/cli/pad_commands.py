@@ -93,12 +93,20 @@ def calibrate_a_pad(context: typer.Context, data: Path, out: Path, save: str | N
     report_next("export-reader", measured.campaign.pad, "--calibration", path.stem, *given)
 
 
-def export_a_pad(context: typer.Context, name: str, set_: list[str] | None, calibration: str | None, out: Path) -> None:
-    """Write the reader of a pad."""
-    from pneutouch.workflows.pad.export import write_pad_reader
+def export_a_pad(
+    context: typer.Context, name: str, set_: list[str] | None, calibration: str | None, simulator: str | None, out: Path
+) -> None:
+    """Write the reader of a pad, or its model for a simulator."""
+    from pneutouch.workflows.pad.export import write_pad_reader, write_pad_simulator
     from pneutouch.workflows.pad.load import load_pad
 
-    _refuse_others(context, name, "design", "set_", "calibration", "out")
+    _refuse_others(context, name, "design", "set_", "calibration" if simulator is None else "simulator", "out")
+    if simulator is not None:
+        with bar("tabulating a cell"):
+            folder = write_pad_simulator(load_pad(name, changes(set_)), simulator, out)
+        echo(str(folder))
+        notify(f"how to use it: {folder / 'README.md'}")
+        return
     with bar("tabulating a cell"):
         folder = write_pad_reader(load_pad(name, changes(set_)), calibration, out)
     echo(str(folder))

@@ -13,7 +13,7 @@ from pneutouch.body.shapes import polygon
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.touch.cell import BALLS, TILTS, CellTable
+from pneutouch.mechanics.touch.cell import RADII, TILTS, CellTable
 from pneutouch.results.record import plain
 from pneutouch.spec.read import toml_value
 from pneutouch.spec.values import is_finite
@@ -24,6 +24,14 @@ from pneutouch.workflows.pad.touch import pad_model
 
 _KEPT = 4
 """Number of pads at a driving pressure that are kept ready: each holds the tables of its readers."""
+
+
+_OBJECTS = {
+    "ball": ("x_mm", "y_mm", "radius_mm", "depth_mm"),
+    "cylinder": ("x_mm", "y_mm", "turn_deg", "radius_mm", "depth_mm"),
+    "plate": ("slope_x", "slope_y", "depth_mm"),
+}
+"""Fields of the objects, as the methods of `PadTouch` take them."""
 
 
 class _NoTableError(Exception):
@@ -72,11 +80,8 @@ class Pads:
             if len(self._touches) >= _KEPT:
                 self._touches.clear()
             self._touches[key] = touch
-        touch, depth_mm = self._touches[key], given["depth_mm"]
-        if given["object"] == "ball":
-            contact = touch.ball(given["x_mm"], given["y_mm"], given["radius_mm"], depth_mm)
-        else:
-            contact = touch.plate(given["slope_x"], given["slope_y"], depth_mm)
+        touch = self._touches[key]
+        contact = getattr(touch, given["object"])(**{name: given[name] for name in _OBJECTS[given["object"]]})
         answer = {"contact": contact, "read": touch.read(contact.pressure_rises_kPa, given["noise_kPa"])}
         # JSON has no NaN.
         return dict(json.loads(json.dumps(plain(answer)), parse_constant=lambda _: None))
@@ -101,13 +106,13 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
     half, (x, y) = math.ceil(0.5 * (high - low).max() + 1.0), np.round(0.5 * (low + high)).tolist()
     # Rounded inwards.
     radius, steep = pad.layout.cell.inner_radius, math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3
-    least, most = math.ceil(1e3 * BALLS[0] * radius) / 1e3, math.floor(1e3 * BALLS[-1] * radius) / 1e3
+    least, most = math.ceil(1e3 * RADII[0] * radius) / 1e3, math.floor(1e3 * RADII[-1] * radius) / 1e3
     pressures_kPa = pad.scene.design.pneumatics.driving_pressures_kPa
     first = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0])
     pressures = [f"{one_kPa:g}" for one_kPa in pressures_kPa]
     rows: list[tuple[Any, ...]] = [
         ("pressure", "Driving pressure", "kPa", None, None, f"{first:g}", "Those of the cell's design.", pressures),
-        ("object", "Object", "", None, None, "ball", "What touches the pad.", ["ball", "plate"]),
+        ("object", "Object", "", None, None, "ball", "What touches the pad.", list(_OBJECTS)),
         (
             "depth_mm",
             "Depth",
@@ -118,9 +123,10 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
             "Below the tops of the inflated domes.",
             [],
         ),
-        ("radius_mm", "Ball radius", "mm", least, most, round(2.0 * least, 1), "A larger one is a plate.", []),
-        ("x_mm", "Ball at x", "mm", x - half, x + half, round(x + 0.2 * half, 1), "Place of its axis.", []),
-        ("y_mm", "Ball at y", "mm", y - half, y + half, round(y + 0.15 * half, 1), "Place of its axis.", []),
+        ("radius_mm", "Radius", "mm", least, most, round(2.0 * least, 1), "A larger one is a plate.", []),
+        ("x_mm", "At x", "mm", x - half, x + half, round(x + 0.2 * half, 1), "Place of its axis.", []),
+        ("y_mm", "At y", "mm", y - half, y + half, round(y + 0.15 * half, 1), "Place of its axis.", []),
+        ("turn_deg", "Turn", "°", 0.0, 180.0, 60.0, "Angle of the cylinder's axis to x.", []),
         ("slope_x", "Slope along x", "", -steep, steep, 0.05, "Rise of the plate by the way along x.", []),
         ("slope_y", "Slope along y", "", -steep, steep, 0.02, "Rise of the plate by the way along y.", []),
         ("noise_kPa", "Noise of a gauge", "kPa", 1e-4, 0.5, 0.002, "Standard deviation that intervals count.", []),

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pneutouch import __version__
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import Evaluation
@@ -14,6 +16,7 @@ from pneutouch.export.reader.render import reader_files, sketch_note
 from pneutouch.export.simulator.model import (
     TEXTS,
     PressTable,
+    SimulatedDome,
     SimulatedSensor,
     mjcf_files,
     press_table,
@@ -82,12 +85,13 @@ def write_reader(result: ReaderResult, out: Path) -> Path:
 
 def readme(sensor: SimulatedSensor, kind: str) -> bytes:
     """README of a simulator's model of ``kind``."""
-    table = sensor.tables[0]
+    table, pad = sensor.tables[0], "-pad" if len(sensor.domes) > 1 else ""
     text = (
-        (TEXTS / "templates" / f"{kind}.md")
+        (TEXTS / "templates" / f"{kind}{pad}.md")
         .read_text(encoding="utf-8")
         .format(
             name=sensor.name,
+            count=len(sensor.domes),
             pressure=f"{table.driving_pressure_kPa:g}",
             pressures=", ".join(f"{one.driving_pressure_kPa:g}" for one in sensor.tables),
             depth=f"{1e3 * min(one.indentation[-1] for one in sensor.tables):.2f}",
@@ -136,8 +140,9 @@ def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
 
 def _simulated(evaluation: Evaluation) -> SimulatedSensor:
     assembly, membrane = evaluation.assembly, evaluation.scene.membrane_material
-    dome = assembly.layout.shape, membrane.density_g_per_cm3.nominal
-    return simulated_sensor(evaluation.scene.name, assembly.bodies, assembly.solids, *dome, press_tables(evaluation))
+    dome, name = (assembly.layout.shape, membrane.density_g_per_cm3.nominal), evaluation.scene.name
+    domes = (SimulatedDome(name, np.zeros(3), press_tables(evaluation)),)
+    return simulated_sensor(name, assembly.bodies, assembly.solids, *dome, domes)
 
 
 def press_tables(evaluation: Evaluation, steps: int = STEPS) -> tuple[PressTable, ...]:

@@ -40,8 +40,10 @@ int main(void)
             reader.used[k] = k + 1 != lost;
         }
         k = (int)tip_read(&reader, rise, &c);
-        printf("%d %.15g %.15g %.15g %.15g %.15g %.15g %.15g %.15g %.15g\\n", k, c.force_N, c.uncertainty_N, c.x_mm,
+        printf("%d %.15g %.15g %.15g %.15g %.15g %.15g %.15g %.15g %.15g ", k, c.force_N, c.uncertainty_N, c.x_mm,
                c.y_mm, c.xx_mm2, c.xy_mm2, c.yy_mm2, c.curvature_per_mm, c.curvature_uncertainty_per_mm);
+        printf("%.15g %.15g %.15g %.15g %.15g %.15g\\n", c.slope_x, c.slope_y, c.slope_x_uncertainty,
+               c.slope_y_uncertainty, c.turn_rad, c.turn_uncertainty_rad);
     }
     return 0;
 }
@@ -93,7 +95,7 @@ def rows_of(pad, count):
 
 
 def test_c_and_python_have_the_same_answers(pad, table, header):
-    kinds, seen = ["none", "ball", "plate", "either", "outside"], set()
+    kinds, seen = ["none", *KINDS, "either", "outside"], set()
     rows = list(rows_of(pad, 200))
     reader = PadForceReader(table)
     reader.tare([[0.0] * 7])

@@ -11,13 +11,14 @@ from benchmarks.store import stored
 
 from pneutouch.evaluation import evaluate
 from pneutouch.mechanics.models.solid import solid_states
-from pneutouch.mechanics.solid.indenter import ball
+from pneutouch.mechanics.solid.indenter import ball, cylinder
 from pneutouch.mechanics.touch import cell as cells
-from pneutouch.mechanics.touch.cell import TABLE_ERROR, cell_table, greatest_lean
+from pneutouch.mechanics.touch.cell import TABLE_ERROR, cell_table, greatest_lean, outer_sphere
 from pneutouch.mechanics.touch.forward import PadModel
-from pneutouch.mechanics.touch.objects import answer_of, random_objects
+from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
 from pneutouch.mechanics.touch.reader_table import STRAIGHT, reader_table
 from pneutouch.mechanics.touch.resolution import resolution
+from pneutouch.shape import shape_of
 from pneutouch.spec.pad import PadTable
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.fault import find_fault, pad_reader
@@ -57,7 +58,7 @@ def test_a_ball_in_the_middle_is_the_solids(coarse, sensor, size):
     (state,) = solid_states(sensor.replace(waves=0, body=ball(radius), steps=10), np.array([PRESSURE]))
     travel = np.linspace(0.3, 0.9, 5) * min(coarse.depth, state.range_end)
     one = np.full(5, radius)
-    answer = coarse.under_ball(one, np.zeros(5), coarse.apex - travel)
+    answer = coarse.under_round("balls", one, np.zeros(5), coarse.apex - travel)
     assert np.allclose(answer.force, np.interp(travel, state.indentation, state.force), rtol=0.04)
     assert np.allclose(answer.rise, np.interp(travel, state.indentation, state.pressure_rise), rtol=0.04)
     assert not answer.sideways.any()
@@ -82,10 +83,47 @@ def test_the_force_under_a_ball_without_friction_goes_through_its_middle(pad, co
     place, radius, depth = np.array([[1.2, 0.0]]), np.array([6.0]), np.array([1.4])
     answer = pad.under_balls(place, radius, depth)
     assert (answer.forces[0] > 0).sum() == 1
-    one = coarse.under_ball(radius, place[:, 0], coarse.apex - depth)
+    one = coarse.under_round("balls", radius, place[:, 0], coarse.apex - depth)
     slope = float(one.sideways[0] / one.force[0])
     assert slope > 0.0
     assert answer.centre[0, 0] + slope * (radius[0] - depth[0]) == pytest.approx(1.2, abs=0.15)
+
+
+@pytest.mark.parametrize("size", [3.0, 30.0])
+def test_the_sphere_of_an_outer_face_is_its_own_or_one_that_touches_alike(size):
+    assert outer_sphere(shape_of("hemisphere", 3.0, 0.8, {}), size, 1.2) == pytest.approx(3.8, rel=1e-4)
+    cap = shape_of("cap", 3.0, 0.8, {"rise": 1.8})
+    assert outer_sphere(cap, size, 0.6) == pytest.approx(0.5 * (3.0**2 + 1.8**2) / 1.8 + 0.8, rel=1e-4)
+    high, low = (outer_sphere(shape_of("ellipsoid", 3.0, 0.8, {"rise": rise}), size, 0.6) for rise in (4.0, 2.0))
+    assert high < 3.8 < low
+
+
+def test_a_cylinder_along_a_row_presses_its_cells_alike_and_across_it_as_a_plate_where_it_is_wide(pad, coarse):
+    """Cell 1 is in the middle of the ring; cells 2 and 5 lie with it on the x axis."""
+    turn = np.array([[0.5 * np.pi, 0.0], [0.5 * np.pi + np.pi, 0.0], [np.pi / 6.0, 0.0]])
+    answer = pad.under_cylinders(turn, np.full(3, 6.0), np.full(3, 1.2))
+    on_line = np.abs(pad.places[:, 1]) < 1e-6
+    assert np.allclose(answer.rise[0, on_line], answer.rise[0, 0]) and not answer.rise[0, ~on_line].any()
+    assert np.allclose(answer.rise[1], answer.rise[0]) and answer.force[0] == pytest.approx(3.0 * answer.forces[0, 0])
+    # Turned by 120 degrees it lies on another row of the hexagon.
+    assert (
+        answer.rise[2] == pytest.approx(answer.rise[2, 0] * (answer.rise[2] > 0.0)) and (answer.rise[2] > 0).sum() == 3
+    )
+    one, depth = np.ones(1), np.array([1.0])
+    sizes = [coarse.under_round("balls", 3.0 * coarse.radius * one, 0.0 * one, coarse.apex - depth).force[0]]
+    sizes += [
+        coarse.under_round("cylinders", s * coarse.radius * one, 0.0 * one, coarse.apex - depth).force[0]
+        for s in (3, 20)
+    ]
+    sizes.append(coarse.under_plate(0.0 * one, coarse.apex - depth).force[0])
+    assert sizes == sorted(sizes) and sizes[2] == pytest.approx(sizes[3], rel=0.1)
+
+
+def test_the_force_under_a_cylinder_beside_a_cell_is_across_its_axis(coarse):
+    pad = PadModel(np.zeros((1, 2)), coarse, np.ones(1))
+    axis, size = np.array([[0.0, 1.5], [np.pi, 1.5]]), np.array([6.0, 6.0])
+    right, left = pad.under_cylinders(axis, size, np.array([1.3, 1.3])).centre
+    assert 0.0 < right[0] < 1.5 and left[0] == pytest.approx(-right[0]) and abs(right[1]) < 1e-6
 
 
 def test_what_is_mirrored_reads_mirrored(pad):
@@ -133,21 +171,21 @@ def covered(told, answer):
     return within.mean(), (square <= 5.99).mean()
 
 
-@pytest.mark.parametrize(("kind", "error"), [("ball", 0.06), ("plate", 0.01)])
+@pytest.mark.parametrize(("kind", "error"), [("ball", 0.06), ("plate", 0.01), ("cylinder", 0.03)])
 def test_force_and_place_are_within_their_intervals(pad, table, kind, error):
     answer, rise = readings(pad, kind, 64, 3)
     kinds, told = read(table, rise)
-    assert np.isin(kinds, [kind, "either"]).mean() > 0.95
-    assert min(covered(told, answer)) >= 0.85
+    assert np.isin(kinds, [kind, "either"]).mean() > (0.8 if kind == "cylinder" else 0.95)
+    assert min(covered(told, answer)) >= (0.8 if kind == "cylinder" else 0.85)
     assert np.nanmedian(np.abs(told[0] / answer.force - 1.0)) < error
 
 
 @pytest.mark.slow
 def test_intervals_hold_as_often_as_they_say(pad, table):
-    """Of 1,200 random contacts; the region of a ball's place is no ellipse, and fits of few starts miss part of it."""
+    """Of 1,200 random contacts; the region of a place is no ellipse, and fits of few starts miss part of it."""
     shares = []
-    for kind in ("ball", "plate"):
-        answer, rise = readings(pad, kind, 600, 11)
+    for kind in KINDS:
+        answer, rise = readings(pad, kind, 400, 11)
         shares.append(covered(read(table, rise)[1], answer))
     force, centre = np.mean(shares, axis=0)
     assert 0.93 <= force <= 0.99 and 0.92 <= centre <= 0.985
@@ -197,21 +235,30 @@ def test_information_grows_with_quiet_gauges_and_is_least_where_one_cell_is_touc
     assert quiet.place[1] > 2.5 * quiet.place[0]
 
 
-@pytest.mark.parametrize(("kind", "least"), [("ball", 0.4), ("plate", 0.1)])
+@pytest.mark.parametrize(("kind", "least"), [("ball", 0.4), ("plate", 0.1), ("cylinder", 0.2)])
 def test_what_a_reading_leaves_is_what_information_says(pad, table, kind, least):
-    """Errors over the standard deviations that the information gives, in the median; plates err by less than is counted."""
+    """Errors over the standard deviations that the information gives, in the median; plates err by less than is counted,
+    and readings of balls and cylinders leave open which of both it is."""
     answer, rise = readings(pad, kind, 80, 9)
     objects = random_objects(pad, kind, 240, np.random.default_rng(9))
     known = resolution(pad, kind, objects, NOISE, STRAIGHT)
     told = read(table, rise)[1]
     away = np.hypot(*(told[2:4].T - answer.centre).T)
     for errors, spread in ((np.abs(told[0] - answer.force), known.force), (away, known.place)):
-        assert least < np.nanmedian(errors) / np.median(spread) < 1.5
+        assert least < np.nanmedian(errors) / np.median(spread) < 2.5
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("changes", "pressure", "clamp"), [({}, 12.0, "base"), (CELL, 0.0, "base"), (CELL, 12.0, "flange")]
+    ("changes", "pressure", "clamp"),
+    [
+        ({}, 12.0, "base"),
+        (CELL, 0.0, "base"),
+        (CELL, 12.0, "flange"),
+        (CELL | {"membrane.shape": "cap", "membrane.rise_mm": 1.8}, 12.0, "base"),
+        (CELL | {"membrane.shape": "ellipsoid", "membrane.rise_mm": 4.0}, 12.0, "base"),
+        (CELL | {"membrane.shape": "thimble", "membrane.side_mm": 1.5}, 12.0, "base"),
+    ],
 )
 def test_presses_that_the_table_was_not_made_of_are_within_its_error(changes, pressure, clamp):
     sensor = evaluate("paper-dome", changes, clamp=clamp).sensor
@@ -225,16 +272,17 @@ def test_presses_that_the_table_was_not_made_of_are_within_its_error(changes, pr
         lean = share * float(greatest_lean(table.depth, table.outer, np.array(radius)))
         offset = lean * (table.outer + radius)
         down = (table.outer + radius) * (1.0 - np.sqrt(1.0 - lean**2))
-        press = plain.replace(body=ball(radius), offset=offset)
-        curve = cells._pressed(press, probe, free, table.depth, max(table.depth - down, 0.35 * table.depth))
-        travel = np.linspace(0.0, table.depth, len(curve.values))
-        inside = travel <= min(table.depth - down, curve.end)
-        at = np.full(inside.sum(), radius), np.full(inside.sum(), offset)
-        found = table.under_ball(*at, curve.first - travel[inside])
-        for ours, column in ((found.force, 0), (found.rise, 3)):
-            known = curve.values[inside, column]
-            least = 0.1 * table.plates.values[0, 0, -1, column]
-            assert np.abs(ours - known).max() <= TABLE_ERROR * max(known.max(), least)
+        for kind, body in (("balls", ball), ("cylinders", cylinder)):
+            press = plain.replace(body=body(radius), offset=offset)
+            curve = cells._pressed(press, probe, free, table.depth, max(table.depth - down, 0.35 * table.depth))
+            travel = np.linspace(0.0, table.depth, len(curve.values))
+            inside = travel <= min(table.depth - down, curve.end)
+            at = np.full(inside.sum(), radius), np.full(inside.sum(), offset)
+            found = table.under_round(kind, *at, curve.first - travel[inside])
+            for ours, column in ((found.force, 0), (found.rise, 3)):
+                known = curve.values[inside, column]
+                least = 0.1 * table.plates.values[0, 0, -1, column]
+                assert np.abs(ours - known).max() <= TABLE_ERROR * max(known.max(), least)
 
 
 @pytest.mark.slow

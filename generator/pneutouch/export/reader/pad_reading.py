@@ -2,17 +2,24 @@
 
 A few objects near to a reading are each fitted to it by damped steps of least squares, and what they agree on is told.
 Pressures are kPa, lengths mm, forces N. A plate's parameters are its slopes along x and y and its depth; a ball's its
-place x, y, the inner radius of a dome over its own, and its depth.
+place x, y, the inner radius of a dome over its own, and its depth; a cylinder's the angle of its horizontal normal to
+x and the place of its axis along that, then as a ball's. Kinds are counted in this order: ball, plate, cylinder.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-STARTS = (5, 2)
-"""Number of balls and of plates that are fitted to a reading."""
-STEPS = 4
-"""Steps of each fit."""
+KINDS = ("ball", "plate", "cylinder")
+STARTS = (4, 2, 4)
+"""Number of each that are fitted to a reading."""
+STEPS = 5
+"""Most steps of a fit."""
+SETTLED = 0.01
+"""Decrease of the square sum of residuals in a step below which a fit ends."""
+HOPELESS = 100.0
+"""Square sum of residuals, over the least of the fits before and over the number of cells, from which a fit ends after
+its first steps."""
 MISFIT = 5.0
 """Greatest mean square of the residuals by cell, in standard deviations, of an object that explains a reading."""
 SURE = 0.95
@@ -22,10 +29,12 @@ FOLLOW = 0.01
 
 
 class TouchReading(NamedTuple):
-    """Contact with a pad: ``none``, ``ball``, ``plate``, ``either`` or ``outside``, where nothing explains the reading.
+    """Contact with a pad: ``none``, ``ball``, ``plate``, ``cylinder``, ``either`` where more than one of these explain
+    the reading, or ``outside`` where nothing does.
 
     Force and its standard uncertainty; where its line crosses the plane of the domes' tops, with the covariance;
-    curvature of the object and its standard uncertainty, 1/mm. Not a number where it is not known."""
+    curvature of the object and its standard uncertainty, 1/mm. Of a plate its slopes along x and y, of a cylinder the
+    angle of its axis to x from 0 to pi, with their standard uncertainties. Not a number where it is not known."""
 
     kind: str
     force_N: float = math.nan
@@ -37,12 +46,19 @@ class TouchReading(NamedTuple):
     yy_mm2: float = math.nan
     curvature_per_mm: float = math.nan
     curvature_uncertainty_per_mm: float = math.nan
+    slope_x: float = math.nan
+    slope_y: float = math.nan
+    slope_x_uncertainty: float = math.nan
+    slope_y_uncertainty: float = math.nan
+    turn_rad: float = math.nan
+    turn_uncertainty_rad: float = math.nan
 
 
 class _Fit(NamedTuple):
-    """An object fitted: its logarithmic weight, its square sum of residuals, what it tells (force, x, y, bend), the
-    covariance of that, and whether every cell is within its range."""
+    """An object fitted: its kind, its logarithmic weight, its square sum of residuals, what it tells (force, x, y, bend
+    and its first two parameters), the covariance of that, and whether every cell is within its range."""
 
+    kind: int
     log_weight: float
     square: float
     told: list[float]
@@ -78,24 +94,29 @@ class PadForceReader:
             self.zero_kPa = [zero + FOLLOW * rise for zero, rise in zip(self.zero_kPa, rises, strict=True)]
             return TouchReading("none", 0.0, 0.0)
         deviation = math.hypot(noise, self.table["model_error"] * most)
-        fits = [
-            [self._fitted(kind, start, rises, deviation) for start in self._nearest(kind, rises)] for kind in (0, 1)
-        ]
-        return self._told(*fits)
+        fits, least = list[_Fit](), math.inf
+        for kind, start in self._nearest(rises):
+            fits.append(self._fitted(kind, start, rises, deviation, HOPELESS * max(least, len(rises))))
+            least = min(least, fits[-1].square)
+        return self._told(fits)
 
-    def _nearest(self, kind: int, rises: Sequence[float]) -> list[list[float]]:
-        """Stored objects of a kind that read most like this."""
+    def _nearest(self, rises: Sequence[float]) -> list[tuple[int, list[float]]]:
+        """Stored objects of each kind that read most like this, with their kinds; the nearest first."""
         scaled = [math.asinh(rise / self.table["touched_kPa"]) for rise in rises]
-        best: list[tuple[float, list[float]]] = []
-        for start in self.table["starts"][kind]:
-            pairs = zip(scaled, start["scaled_rises"], self.used, strict=True)
-            best.append((sum((one - other) ** 2 for one, other, used in pairs if used), start["object"]))
-        best.sort(key=lambda one: one[0])
-        return [start for _, start in best[: STARTS[kind]]]
+        chosen: list[tuple[float, int, list[float]]] = []
+        for kind, starts in enumerate(self.table["starts"]):
+            best: list[tuple[float, int, list[float]]] = []
+            for start in starts:
+                pairs = zip(scaled, start["scaled_rises"], self.used, strict=True)
+                best.append((sum((one - other) ** 2 for one, other, used in pairs if used), kind, start["object"]))
+            chosen += sorted(best, key=lambda one: one[0])[: STARTS[kind]]
+        return [one[1:] for one in sorted(chosen, key=lambda one: one[0])]
 
-    def _fitted(self, kind: int, start: Sequence[float], rises: Sequence[float], deviation: float) -> _Fit:
+    def _fitted(
+        self, kind: int, start: Sequence[float], rises: Sequence[float], deviation: float, hopeless: float
+    ) -> _Fit:
         spread, size = self.table["spreads"][kind], len(start)
-        at, damping = list(start), 0.01
+        at, damping, gain = list(start), 0.01, math.inf
         answer = self.answer(kind, at)
         cost = self._cost(answer, rises, deviation)
         for step in range(STEPS + 1):
@@ -103,7 +124,7 @@ class PadForceReader:
             for i in range(size):
                 normal[i][i] += 1.0
                 slope[i] += (at[i] - start[i]) / spread[i]
-            if step == STEPS:
+            if step == STEPS or (step >= 2 and cost > hopeless) or 0.0 < gain < SETTLED:
                 break
             damped = [[normal[i][j] * (1.0 + damping if i == j else 1.0) for j in range(size)] for i in range(size)]
             move = solved(damped, slope)
@@ -122,8 +143,8 @@ class PadForceReader:
         log_weight = (
             -0.5 * cost - sum(math.log(row[i]) for i, row in enumerate(factors(normal))) - math.log(STARTS[kind])
         )
-        bend = at[2] if kind == 0 else 0.0
-        return _Fit(log_weight, cost, [*answer[1:4], bend], covariance, answer[4])
+        bend = 0.0 if kind == 1 else at[2]
+        return _Fit(kind, log_weight, cost, [*answer[1:4], bend, *at[:2]], covariance, answer[4])
 
     def _cost(
         self, answer: tuple[list[float], float, float, float, bool], rises: Sequence[float], deviation: float
@@ -142,16 +163,17 @@ class PadForceReader:
         """Normal matrix and slope of the square sum, parameters in their spreads, and derivatives of what is told."""
         spread, size = self.table["spreads"][kind], len(at)
         columns: list[list[float]] = []
-        turned = [[0.0] * size for _ in range(4)]
+        turned = [[0.0] * size for _ in range(6)]
+        turned[4][0], turned[5][1] = spread[:2]
         for i in range(size):
-            step = 0.01 * spread[i] * (-1.0 if kind == 0 and i == 2 and at[2] > 0.5 else 1.0)
+            step = 0.01 * spread[i] * (-1.0 if kind != 1 and i == 2 and at[2] > 0.5 else 1.0)
             moved = self.answer(kind, [value + step * (i == j) for j, value in enumerate(at)])
             scale = spread[i] / step
             pairs = zip(moved[0], answer[0], self.used, strict=True)
             columns.append([scale * (one - other) / deviation if used else 0.0 for one, other, used in pairs])
             for k, (one, other) in enumerate(zip(moved[1:4], answer[1:4], strict=True)):
                 turned[k][i] = scale * (one - other)
-        if kind == 0:
+        if kind != 1:
             turned[3][2] = spread[2]
         residual = [(one - other) / deviation for one, other in zip(answer[0], rises, strict=True)]
         normal = [[sum(a * b for a, b in zip(one, other, strict=True)) for other in columns] for one in columns]
@@ -159,13 +181,17 @@ class PadForceReader:
 
     def answer(self, kind: int, at: Sequence[float]) -> tuple[list[float], float, float, float, bool]:
         """Rises of the cells under an object, its force, where the line of that crosses the plane of the tops, and
-        whether every cell is within its range. ``kind`` is 0 for a ball, 1 for a plate."""
+        whether every cell is within its range."""
         table, rises, inside = self.table, [], True
         force = x = y = 0.0
+        cos, sin = math.cos(at[0]), math.sin(at[0])
         for (cell_x, cell_y), gain in zip(self.places, table["gains"], strict=True):
-            if kind == 0:
+            if kind != 1:
                 bend = min(max(at[2], table["bends"][0]), table["bends"][1])
                 to_x, to_y, height = at[0] - cell_x, at[1] - cell_y, table["apex_mm"] - at[3]
+                if kind == 2:
+                    gap = at[1] - cos * cell_x - sin * cell_y
+                    to_x, to_y = gap * cos, gap * sin
                 away = math.hypot(to_x, to_y)
                 size = table["outer_mm"] + table["radius_mm"] / bend
                 column = away / math.sqrt(table["depth_mm"] * (2.0 * size - table["depth_mm"]))
@@ -175,7 +201,7 @@ class PadForceReader:
                 height = table["apex_mm"] - at[2] + at[0] * cell_x + at[1] * cell_y
                 row, column = 0.0, away / math.hypot(1.0, away) / table["steepest"]
                 inside = inside and column <= 1.0
-            if kind == 0 and column > 1.05:
+            if kind != 1 and column > 1.05:
                 rises.append(0.0)
                 continue
             pressed, sideways, moment, rise, held = self._interpolated(kind, row, column, height)
@@ -208,9 +234,8 @@ class PadForceReader:
                     out[part] += w * c * values[i][j][k][part]
         return out[0], out[1], out[2], out[3], travel <= sum(w * reach[i][j] for i, j, w in corners)
 
-    def _told(self, balls: Sequence[_Fit], plates: Sequence[_Fit]) -> TouchReading:
+    def _told(self, fits: Sequence[_Fit]) -> TouchReading:
         """The fits by their weights as one answer."""
-        fits = [*balls, *plates]
         top = max(fit.log_weight for fit in fits)
         weights = [math.exp(fit.log_weight - top) for fit in fits]
         whole = sum(weights)
@@ -220,19 +245,31 @@ class PadForceReader:
             return TouchReading("outside")
         pairs = list(zip(weights, fits, strict=True))
         mean = [sum(weight * fit.told[i] for weight, fit in pairs) for i in range(4)]
+        # Scatter as of a weighted sample, which of few fits is larger; at most twice as large.
+        few = 1.0 / max(1.0 - sum(weight**2 for weight in weights), 0.5)
         spread = [
             [
-                sum(w * (fit.covariance[i][j] + (fit.told[i] - mean[i]) * (fit.told[j] - mean[j])) for w, fit in pairs)
+                sum(
+                    w * (fit.covariance[i][j] + few * (fit.told[i] - mean[i]) * (fit.told[j] - mean[j]))
+                    for w, fit in pairs
+                )
                 for j in range(4)
             ]
             for i in range(4)
         ]
-        ball = sum(weights[: len(balls)])
-        kind = "ball" if ball > SURE else "plate" if ball < 1.0 - SURE else "either"
+        best = max(fits, key=lambda fit: fit.log_weight)
+        sure = sum(weight for weight, fit in pairs if fit.kind == best.kind) > SURE
         radius = self.table["radius_mm"]
         bend = mean[3] / radius, math.sqrt(spread[3][3]) / radius
         place = mean[1], mean[2], spread[1][1], spread[1][2], spread[2][2]
-        return TouchReading(kind, mean[0], math.sqrt(spread[0][0]), *place, *bend)
+        told = TouchReading(KINDS[best.kind] if sure else "either", mean[0], math.sqrt(spread[0][0]), *place, *bend)
+        one, other = best.told[4:]
+        of_one, of_other = (math.sqrt(best.covariance[i][i]) for i in (4, 5))
+        if sure and best.kind == 1:
+            return told._replace(slope_x=one, slope_y=other, slope_x_uncertainty=of_one, slope_y_uncertainty=of_other)
+        if sure and best.kind == 2:
+            return told._replace(turn_rad=(one + 0.5 * math.pi) % math.pi, turn_uncertainty_rad=of_one)
+        return told
 
 
 def _ends(share: float, count: int) -> tuple[tuple[int, float], ...]:

@@ -34,6 +34,8 @@ def pad_reader_files(table: Mapping[str, Any], source: PadReaderSource) -> dict[
         of_kind=pad_reading.STARTS,
         fits=sum(pad_reading.STARTS),
         steps=pad_reading.STEPS,
+        settled=pad_reading.SETTLED,
+        hopeless=pad_reading.HOPELESS,
         follow=pad_reading.FOLLOW,
         misfit=pad_reading.MISFIT,
         sure=pad_reading.SURE,

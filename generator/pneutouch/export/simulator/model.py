@@ -42,6 +42,11 @@ class RigidInertia:
         centre = (self.mass * self.centre + other.mass * other.centre) / mass
         return RigidInertia(mass, centre, self.about_origin + other.about_origin)
 
+    def moved(self, way: Array) -> "RigidInertia":
+        """Inertia of the same body, moved by a way in m (3,), its frame left where it is."""
+        about = self.about_centre + _steiner(self.mass, self.centre + way)
+        return RigidInertia(self.mass, self.centre + way, about)
+
     def without(self, part: "RigidInertia") -> "RigidInertia":
         """Inertia that is left when a part of it moves on its own."""
         return self + RigidInertia(-part.mass, part.centre, -part.about_origin)
@@ -132,17 +137,26 @@ def press_table(
 
 
 @dataclass(frozen=True)
+class SimulatedDome:
+    """One dome: its name in the model, the place of its axis, m (3,), and a table for each driving pressure, rising."""
+
+    name: str
+    place: Array
+    tables: tuple[PressTable, ...]
+
+
+@dataclass(frozen=True)
 class SimulatedSensor:
-    """A sensor as simulators take it.
+    """A sensor of one dome, or a pad of several equal ones, as simulators take it.
 
     Attributes:
         name: Name of the design, of its link and body.
         bodies: Print meshes, mm, in the frame of the base plane: z outwards along the axis of the dome.
         inertia: Inertia of all bodies together.
-        moving: The share of this inertia that moves with the apex; see `moving_share`.
+        moving: The share of this inertia that moves with the apex of a dome on the z axis; see `moving_share`.
         radius: Outer height of the unloaded dome, and radius of the sphere that stands for it, m.
         rear: Height of the rearmost face, m: below the base plane.
-        tables: One for each driving pressure, rising.
+        domes: Those of a pad in the order of their numbers.
     """
 
     name: str
@@ -151,12 +165,17 @@ class SimulatedSensor:
     moving: RigidInertia
     radius: float
     rear: float
-    tables: tuple[PressTable, ...]
+    domes: tuple[SimulatedDome, ...]
+
+    @property
+    def tables(self) -> tuple[PressTable, ...]:
+        """The tables of the first dome."""
+        return self.domes[0].tables
 
     @property
     def stiffest(self) -> float:
         """Greatest stiffness of all tables, N/m."""
-        return max(table.stiffest for table in self.tables)
+        return max(table.stiffest for dome in self.domes for table in dome.tables)
 
     @property
     def armature(self) -> float:
@@ -170,9 +189,9 @@ def simulated_sensor(
     solids: tuple[Solid, ...],
     shape: DomeShape,
     density: float,
-    tables: tuple[PressTable, ...],
+    domes: tuple[SimulatedDome, ...],
 ) -> SimulatedSensor:
-    """A sensor of bodies and solids; its dome has a shape, a density in g/cm3 and ``tables`` of its presses."""
+    """A sensor of bodies and solids; its domes have one shape, and a density in g/cm3."""
     return SimulatedSensor(
         name,
         bodies,
@@ -180,7 +199,7 @@ def simulated_sensor(
         moving_share(shape, 1e3 * density),
         1e-3 * shape.outer_height,
         1e-3 * min(float(body.bounds[0, 2]) for body in bodies),
-        tables,
+        domes,
     )
 
 
@@ -251,20 +270,26 @@ def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 
 
 def module(sensor: SimulatedSensor) -> bytes:
-    """The callbacks with the table of the sensor, as a module that needs only MuJoCo."""
+    """The callbacks with the tables of the domes, as a module that needs only MuJoCo."""
     source = (TEXTS / "dome_force.py").read_text(encoding="utf-8")
-    table = pprint.pformat(plain(dome_table(sensor)), width=118, compact=True, sort_dicts=False)
+    tables = [plain(dome_table(sensor, dome)) for dome in sensor.domes]
+    one = len(tables) == 1
+    data = pprint.pformat(tables[0] if one else tables, width=118, compact=True, sort_dicts=False)
+    named = f"TABLE: dict[str, Any] = {data}" if one else f"TABLES: list[dict[str, Any]] = {data}"
+    gives, call = "DomeForce", "install_dome(model, TABLE, driving_pressure_kPa, prefix)"
+    if not one:
+        gives, call = f"list[{gives}]", f"[{call.replace('TABLE', 'table')} for table in TABLES]"
     usage = (
-        '\n\ndef install(model: Any, driving_pressure_kPa: float | None = None, prefix: str = "") -> DomeForce:\n'
-        '    """Give a model that holds this sensor the force and the pressure of its dome; see `install_dome`."""\n'
-        "    return install_dome(model, TABLE, driving_pressure_kPa, prefix)\n"
+        f'\n\ndef install(model: Any, driving_pressure_kPa: float | None = None, prefix: str = "") -> {gives}:\n'
+        '    """Give a model that holds this sensor the force and the pressure of each dome; see `install_dome`."""\n'
+        f"    return {call}\n"
     )
-    return f"{source}\n\nTABLE: dict[str, Any] = {table}\n{usage}".encode()
+    return f"{source}\n\n{named}\n{usage}".encode()
 
 
-def dome_table(sensor: SimulatedSensor) -> DomeTable:
-    """The table as the module reads it."""
-    table = DomeTable(sensor.name, sensor.radius, _INERTIA_SHARE, _DAMPING_SHARE, tuple(map(_state, sensor.tables)))
+def dome_table(sensor: SimulatedSensor, dome: SimulatedDome) -> DomeTable:
+    """The table of a dome as the module reads it."""
+    table = DomeTable(dome.name, sensor.radius, _INERTIA_SHARE, _DAMPING_SHARE, tuple(map(_state, dome.tables)))
     return rounded(table, _DIGITS)
 
 
@@ -281,11 +306,14 @@ def _state(table: PressTable) -> DomePress:
 
 
 def mjcf(sensor: SimulatedSensor) -> bytes:
-    """The model: a base with everything that does not move, and the dome as a sphere on a sliding joint.
+    """The model: a base with everything that does not move, and each dome as a sphere on a sliding joint.
 
-    The inertia of both together is that of the bodies, without driving pressure and force.
+    The inertia of all together is that of the bodies, without driving pressure and force.
     """
-    return _filled("mjcf.xml.j2", sensor, step=_TIME_STEP, base=sensor.inertia.without(sensor.moving))
+    base = sensor.inertia
+    for dome in sensor.domes:
+        base = base.without(sensor.moving.moved(dome.place))
+    return _filled("mjcf.xml.j2", sensor, step=_TIME_STEP, base=base)
 
 
 def urdf_files(sensor: SimulatedSensor) -> dict[str, bytes]:

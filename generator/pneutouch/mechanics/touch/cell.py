@@ -1,12 +1,12 @@
-"""Answers of one cell of a pad to balls beside its axis and to leaning plates, tabulated for its own dome and gas.
+"""Answers of one cell of a pad to balls and cylinders beside its axis and to leaning plates, for its dome and gas.
 
 The table of contact anywhere gives forces over readings of the central plate; cells under one rigid object are
 coupled by its height, so that here forces and pressure are functions of the travel. ``harmonic`` makes every press.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,14 +18,15 @@ from pneutouch.mechanics.harmonic.press import OffAxisState
 from pneutouch.mechanics.models.harmonic import placed_press
 from pneutouch.mechanics.models.solid import KINDS, curve_between, reported_events, solid_probe, solid_states
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.indenter import ball
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.dome import DomeShape
 
-BALLS = (1.0, 2.0, 5.0, 20.0)
-"""Radii of the tabulated balls over the inner radius of the dome."""
+RADII = (1.0, 2.0, 5.0, 20.0)
+"""Radii of the tabulated balls and cylinders over the inner radius of the dome."""
 SHARES = (0.0, 0.3, 0.55, 0.8, 1.0)
-"""Offsets of a ball as shares of the greatest at which it still touches the dome, its lowest point at the depth."""
+"""Offsets of their axes as shares of the greatest at which it still touches the dome, its lowest point at the depth."""
 TILTS = (0.0, 0.18, 0.35)
 """Sines of the angles by which a plate leans."""
 _ORDER, _CELLS, _STEPS = 6, 12, 10
@@ -53,7 +54,7 @@ class CellAnswer(NamedTuple):
 
 
 _NUMBERS = ("radius", "outer", "depth", "apex", "cavity", "driving_pressure")
-_KINDS, _AXES, _PARTS = ("balls", "plates"), ("rows", "columns"), ("values", "first", "reach")
+_KINDS, _AXES, _PARTS = ("balls", "plates", "cylinders"), ("rows", "columns"), ("values", "first", "reach")
 """Names of the numbers and of the arrays of a table."""
 
 
@@ -73,8 +74,8 @@ class _Nodes:
 @dataclass(frozen=True)
 class CellTable:
     """Answers of one cell at one driving pressure, mm, N and MPa. ``radius`` is the inner radius of the dome, ``outer``
-    the outer one, ``depth`` the greatest travel, ``apex`` the height of the inflated dome outside, ``cavity`` its
-    volume before contact, mm3."""
+    that of a sphere for its outer face (`outer_sphere`), ``depth`` the greatest travel, ``apex`` the height of the
+    inflated dome outside, ``cavity`` its volume before contact, mm3."""
 
     radius: float
     outer: float
@@ -84,6 +85,7 @@ class CellTable:
     driving_pressure: float
     balls: _Nodes
     plates: _Nodes
+    cylinders: _Nodes
 
     def arrays(self) -> dict[str, Array]:
         """The table as arrays by name."""
@@ -110,20 +112,20 @@ class CellTable:
         """The table of a similar cell, ``size`` times as large, with ``force`` times the forces of its size; pressures
         are the same where the gas behind the cell is similar too."""
         scale = force * size**2 * np.array([1.0, 1.0, size, 1.0 / (force * size**2)])
-        balls, plates = (
-            replace(one, values=one.values * scale, first=one.first * size, reach=one.reach * size)
-            for one in (self.balls, self.plates)
-        )
+        nodes: dict[str, Any] = {
+            kind: replace(one, values=one.values * scale, first=one.first * size, reach=one.reach * size)
+            for kind, one in ((kind, getattr(self, kind)) for kind in _KINDS)
+        }
         lengths = {name: size * getattr(self, name) for name in ("radius", "outer", "depth", "apex")}
-        return replace(self, balls=balls, plates=plates, cavity=self.cavity * size**3, **lengths)
+        return replace(self, **nodes, cavity=self.cavity * size**3, **lengths)
 
-    def under_ball(self, ball_radius: Array, offset: Array, height: Array) -> CellAnswer:
-        """Under balls of radii from the first to the last of `BALLS`, their axes at distances ``offset`` from that of
-        the dome and their lowest points at ``height`` over the base plane; arrays of one shape."""
-        share = offset / (greatest_lean(self.depth, self.outer, ball_radius) * (self.outer + ball_radius))
+    def under_round(self, kind: str, radius: Array, offset: Array, height: Array) -> CellAnswer:
+        """Under ``balls`` or ``cylinders`` of radii from the first to the last of `RADII`, their axes at distances
+        ``offset`` from that of the dome, lowest points at ``height`` over the base plane; arrays of one shape."""
+        share = offset / (greatest_lean(self.depth, self.outer, radius) * (self.outer + radius))
         beyond = share > SHARES[-1] * 1.05
-        rows, columns = np.log(ball_radius / self.radius), np.minimum(share, SHARES[-1])
-        answer = self._at(self.balls, rows, columns**2, columns, height)
+        rows, columns = np.log(radius / self.radius), np.minimum(share, SHARES[-1])
+        answer = self._at(getattr(self, kind), rows, columns**2, columns, height)
         force, sideways, moment, rise = (np.where(beyond, 0.0, one) for one in answer[:4])
         return CellAnswer(force, sideways, moment, rise, answer.inside | beyond)
 
@@ -133,8 +135,10 @@ class CellTable:
 
     def straight(self, kind: str, bends: Array, leans: Array) -> tuple[Array, Array, Array]:
         """Height at first contact (a, b), end of the range (a, b), and force, sideways force, moment and rise at equal
-        travels (a, b, `_POINTS`, 4), between which a reader may go straight: of ``balls`` at ``bends`` (a,), R0 over
-        their radii, and shares ``leans`` (b,) of the greatest offset; of ``plates`` at sines ``leans``."""
+        travels (a, b, `_POINTS`, 4), between which a reader may go straight.
+
+        Of ``balls`` and ``cylinders`` at ``bends`` (a,), R0 over their radii, and shares ``leans`` (b,) of the greatest
+        offset; of ``plates`` at sines ``leans``."""
         nodes: _Nodes = getattr(self, kind)
         by_row, by_column = nodes.rows.weights(-np.log(bends)), nodes.columns.weights(leans**2)
         first, reach = (np.einsum("ra,cb,ab->rc", by_row, by_column, part) for part in (nodes.first, nodes.reach))
@@ -162,14 +166,14 @@ class CellTable:
         return CellAnswer(force, sideways, moment, rise, (travel <= reach).reshape(shape))
 
 
-def greatest_lean(depth: float, outer: float, ball_radius: Array) -> Array:
-    """Sine of the angle between the axis and the normal at first contact, of a ball whose lowest point is as deep as
-    ``depth`` below the top of a dome of radius ``outer``, and which just touches it."""
-    return np.asarray(np.sqrt(1.0 - (1.0 - depth / (outer + ball_radius)) ** 2))
+def greatest_lean(depth: float, outer: float, radius: Array) -> Array:
+    """Sine of the angle between the axis and the normal at first contact, of a ball or cylinder whose lowest point is
+    as deep as ``depth`` below the top of a dome of radius ``outer``, and which just touches it."""
+    return np.asarray(np.sqrt(1.0 - (1.0 - depth / (outer + radius)) ** 2))
 
 
 def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
-    """The table of a cell at one driving pressure (MPa), by 24 presses of ``harmonic``: 30 s, on a flange 80 to 220 s.
+    """The table of a cell at one driving pressure (MPa), by 44 presses of ``harmonic``, which take minutes.
 
     The depth is that of the sensor's test, or where the range of its central plate ends or, on a flange, its wall lies
     down. Raises BeyondLimitError, and ComputationError for a press that finds no equilibrium."""
@@ -183,23 +187,46 @@ def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
     probe = solid_probe(plain, _CELLS)
     free = state_at(probe.solid, driving_pressure)
     depth = plain.protocol.depth
-    radius, outer = plain.dome.inner_radius, plain.dome.shape.outer_radius
     central = _pressed(plain, probe, free, depth)
     depth = min(depth, central.end, lies)
     scenes = [plain.replace(tilt=float(np.arcsin(lean))) for lean in TILTS]
     plates = [_pressed(one, probe, free, depth) for one in scenes]
-    balls = []
-    for share in BALLS:
-        size = share * radius
-        lean = greatest_lean(depth, outer, np.array(size)) * np.array(SHARES)
+    radius = plain.dome.inner_radius
+    outer = outer_sphere(plain.dome.shape, float(np.sqrt(RADII[0] * RADII[-1])) * radius, depth)
+    balls, cylinders = (_beside(plain, body, probe, free, depth, outer) for body in (ball, cylinder))
+    lengths = radius, outer, depth, free.outer_apex
+    level = _nodes(NodeAxis(np.zeros(1)), TILTS, plates, 1)
+    return CellTable(*lengths, free.volume, driving_pressure, balls, level, cylinders)
+
+
+def outer_sphere(shape: DomeShape, ball_radius: float, depth: float) -> float:
+    """Radius of the sphere that a ball just touches at the same offset as an unloaded dome, its lowest point ``depth``
+    below the top: that of the outer face where it is a part of a sphere."""
+    r, z = np.concatenate([piece.along(np.linspace(0.0, 1.0, 400)) for piece in shape.outer]).T
+    low, high = 0.0, shape.outer_radius + ball_radius
+    for _ in range(50):
+        offset = 0.5 * (low + high)
+        under = ball_radius - np.sqrt(np.maximum(ball_radius**2 - (r - offset) ** 2, 0.0))
+        below = np.abs(r - offset) <= ball_radius
+        touches = (z - under)[below].max(initial=-np.inf) > shape.outer_height - depth
+        low, high = (offset, high) if touches else (low, offset)
+    return 0.5 * (low**2 + depth**2) / depth - ball_radius
+
+
+def _beside(
+    plain: Sensor, body: Callable[[float], RigidObject], probe: StrainProbe, free: FreeState, depth: float, outer: float
+) -> _Nodes:
+    """Presses of bodies of `RADII` at offsets of `SHARES`."""
+    curves = []
+    for size in plain.dome.inner_radius * np.array(RADII):
+        lean = greatest_lean(depth, outer, size) * np.array(SHARES)
         drop = (outer + size) * (1.0 - np.sqrt(1.0 - lean**2))
-        # As deep as a ball nearer to the axis gets, up to which curves are mixed, but not down to the base plane.
+        # As deep as a body nearer to the axis gets, up to which curves are mixed, but not down to the base plane.
         for one, nearer, down in zip(lean, [0.0, *drop[:-1]], drop, strict=True):
-            scene = plain.replace(body=ball(size), offset=float(one * (outer + size)))
+            scene = plain.replace(body=body(float(size)), offset=float(one * (outer + size)))
             to = min(max(depth - float(nearer), _LEAST * depth), _LOWEST * (free.outer_apex - float(down)))
-            balls.append(_pressed(scene, probe, free, depth, to))
-    tables = _nodes(NodeAxis(np.log(BALLS)), SHARES, balls, len(BALLS)), _nodes(NodeAxis(np.zeros(1)), TILTS, plates, 1)
-    return CellTable(radius, outer, depth, free.outer_apex, free.volume, driving_pressure, *tables)
+            curves.append(_pressed(scene, probe, free, depth, to))
+    return _nodes(NodeAxis(np.log(RADII)), SHARES, curves, len(RADII))
 
 
 class _Curve(NamedTuple):
@@ -215,7 +242,7 @@ def _pressed(sensor: Sensor, probe: StrainProbe, free: FreeState, depth: float, 
     """Press of one scene to the travel ``to`` (None: ``depth``), continued straight to ``depth``."""
     press = placed_press(sensor.replace(depth=depth if to is None else to), probe, free)
     test = sensor.protocol
-    pressed = press.run(_ORDER if test.offset or test.tilt else 0)
+    pressed = press.run(_ORDER if test.off_axis else 0)
     states, grid = pressed.path, np.linspace(0.0, depth, _POINTS)
     last = states[-1].indentation
     if len(states) < _FEWEST:

@@ -11,9 +11,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.touch.cell import BALLS, TILTS, CellAnswer, CellTable
+from pneutouch.mechanics.touch.cell import RADII, TILTS, CellAnswer, CellTable
 
-ObjectKind = Literal["ball", "plate"]
+ObjectKind = Literal["ball", "plate", "cylinder"]
 
 
 class PadAnswer(NamedTuple):
@@ -40,14 +40,14 @@ class PadModel:
     def under_balls(self, place: Array, radius: Array, depth: Array) -> PadAnswer:
         """Under balls of radii (m,) with axes at places (m, 2) and lowest points ``depth`` (m,) below the domes' tops.
         Radii beyond the tabulated ones answer as the nearest of these."""
-        low, high = self.radii
-        size = np.clip(radius, low, high)[:, None]
-        away = place[:, None] - self.places
-        distance = np.hypot(away[..., 0], away[..., 1])
-        ball, height = np.broadcast_to(size, distance.shape), self.table.apex - depth[:, None]
-        answer = self.table.under_ball(ball, distance, np.broadcast_to(height, distance.shape))
-        towards = away / np.maximum(distance, 1e-12)[..., None]
-        return self._sum(answer, towards)
+        return self._under_round("balls", place[:, None] - self.places, radius, depth)
+
+    def under_cylinders(self, axis: Array, radius: Array, depth: Array) -> PadAnswer:
+        """Under endless lying cylinders, or bars with such an edge: of their ``axis`` (m, 2) the angle of the
+        normal to x, rad, and the place along it; radii and depths as of balls."""
+        normal = np.column_stack([np.cos(axis[:, 0]), np.sin(axis[:, 0])])
+        away = (axis[:, 1:] - normal @ self.places.T)[..., None] * normal[:, None]
+        return self._under_round("cylinders", away, radius, depth)
 
     def under_plates(self, lean: Array, depth: Array) -> PadAnswer:
         """Under plates whose planes rise by ``lean`` (m, 2), per mm along x and y, and that lie ``depth`` (m,) below
@@ -62,8 +62,15 @@ class PadModel:
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Least and greatest radius of a ball, mm, that the table covers."""
-        return BALLS[0] * self.table.radius, BALLS[-1] * self.table.radius
+        """Least and greatest radius of a ball or cylinder, mm, that the table covers."""
+        return RADII[0] * self.table.radius, RADII[-1] * self.table.radius
+
+    def _under_round(self, kind: str, away: Array, radius: Array, depth: Array) -> PadAnswer:
+        """Under bodies with axes ``away`` (m, n, 2) from those of the cells, at the nearest point."""
+        distance = np.hypot(away[..., 0], away[..., 1])
+        size, height = np.clip(radius, *self.radii)[:, None], self.table.apex - depth[:, None]
+        answer = self.table.under_round(kind, *np.broadcast_arrays(size, distance, height))
+        return self._sum(answer, away / np.maximum(distance, 1e-12)[..., None])
 
     def _sum(self, answer: CellAnswer, towards: Array) -> PadAnswer:
         force = answer.force.sum(axis=1)

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.mechanics.touch.cell import BALLS, TABLE_ERROR, TILTS
+from pneutouch.mechanics.touch.cell import RADII, TABLE_ERROR, TILTS
 from pneutouch.mechanics.touch.forward import ObjectKind, PadModel
 from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
 from pneutouch.units import KPA
 
 _BENDS, _SHARES, _LEANS = 7, 19, 7
-"""Nodes of curvature, offset and lean: 70 kB."""
-STARTS = (192, 64)
-"""Number of balls and of plates from which a fit starts."""
+"""Nodes of curvature, offset and lean: 140 kB."""
+STARTS = (192, 64, 384)
+"""Number of objects of `KINDS` from which a fit starts."""
 STRAIGHT = 0.003
 """Error of rises between the nodes over the greatest of a reading: root mean square (tests/export/reader)."""
 _OF_EACH = 40
@@ -29,11 +29,10 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
     """The table as data; ``noise_kPa`` is the standard deviation of a gauge, ``model_error`` that of the prediction
     over the greatest rise of a reading. Numbers are rounded to those of float32."""
     table = model.table
-    bends = np.linspace(1.0 / BALLS[-1], 1.0 / BALLS[0], _BENDS)
-    nodes = [
-        table.straight("balls", bends, np.linspace(0.0, 1.0, _SHARES)),
-        table.straight("plates", np.ones(1), np.linspace(0.0, TILTS[-1], _LEANS)),
-    ]
+    bends = np.linspace(1.0 / RADII[-1], 1.0 / RADII[0], _BENDS)
+    shares, leans = np.linspace(0.0, 1.0, _SHARES), np.linspace(0.0, TILTS[-1], _LEANS)
+    axes = (bends, shares), (np.ones(1), leans), (bends, shares)
+    nodes = [table.straight(f"{kind}s", *axis) for kind, axis in zip(KINDS, axes, strict=True)]
     random = np.random.default_rng(_SEED)
     drawn = [random_objects(model, kind, _OF_EACH * size, random) for kind, size in zip(KINDS, STARTS, strict=True)]
     return {

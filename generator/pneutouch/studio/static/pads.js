@@ -6,17 +6,21 @@ import { Point } from "./point.js";
 import { Line, post } from "./requests.js";
 import { PadPicture } from "./touched.js";
 
-const PLACES = { ball: ["touch.x_mm", "touch.y_mm"], plate: ["touch.slope_x", "touch.slope_y"] };
+const AT = ["touch.x_mm", "touch.y_mm"];
+const PLACES = { ball: AT, cylinder: AT, plate: ["touch.slope_x", "touch.slope_y"] };
+/** Fields that some objects alone have. */
+const OWN = { ball: [...AT, "touch.radius_mm"], cylinder: [...AT, "touch.radius_mm", "touch.turn_deg"], plate: PLACES.plate };
 const KINDS = {
   none: "Read back: no contact.",
   ball: "Read back: a ball.",
   plate: "Read back: a plate.",
-  either: "Read back: a ball or a plate; these readings do not tell them apart.",
-  outside: "Read back: outside. Neither a ball nor a plate within the range of the cells explains the readings.",
+  cylinder: "Read back: a cylinder or an edge.",
+  either: "Read back: a touch; these readings do not tell balls, plates and cylinders apart.",
+  outside: "Read back: outside. No ball, plate or cylinder within the range of the cells explains the readings.",
 };
 /** Standard deviations of the half width of an interval that holds 95 %. */
 const HALF = 1.96;
-const OBJECT = "Shade: pressure rise. Lines: the ball, dotted where it is as low as the tops of the domes; or the way in which the plate rises. Cross: centre of the force. Dot and dashed ellipse: the centre as read, with its 95 % region.";
+const OBJECT = "Shade: pressure rise. Lines: the ball or cylinder, dotted where it is as low as the tops of the domes; or the way in which the plate rises. Cross: centre of the force. Dot and dashed ellipse: the centre as read, with its 95 % region.";
 
 class PadFields extends Fields {
   slides({ low }) {
@@ -84,14 +88,15 @@ class PadPage extends JobPage {
       if (document.activeElement !== input) this.fields.fill(field, input, text);
       if (slider && document.activeElement !== slider) slider.value = toPlace(field, Number(text));
       slider?.setAttribute("aria-valuetext", `${text} ${field.unit}`);
-      row.hidden = object === "ball" ? PLACES.plate.includes(name) : [...PLACES.ball, "touch.radius_mm"].includes(name);
+      row.hidden = !OWN[object].includes(name) && Object.values(OWN).some((names) => names.includes(name));
     }
     const [x, y] = PLACES[object].map((name) => ({ values: range(name) }));
     const design = PLACES[object].map((name) => Number(this.values[name]));
-    const ball = object === "ball" ? ["touch.radius_mm", "touch.depth_mm"].map((name) => Number(this.values[name])) : null;
+    const round = object === "plate" ? null : ["touch.radius_mm", "touch.depth_mm"].map((name) => Number(this.values[name]));
+    const turn = object === "cylinder" ? Number(this.values["touch.turn_deg"]) : null;
     // While the object is moved the scale grows with the readings and does not shrink.
     if (!Object.keys(values).some((name) => PLACES[object].includes(name))) this.picture.top = 0;
-    this.picture.show({ pad, square: PLACES.ball.map(range), map: { x, y }, design, ball });
+    this.picture.show({ pad, square: AT.map(range), map: { x, y }, design, round, turn });
     this.line.send({ base: this.name, values: { ...this.values } });
   }
 
@@ -137,13 +142,15 @@ class PadPage extends JobPage {
   figures({ contact, read }) {
     const [[x, y], [[across, skew], [, up]]] = [read.centre_mm[0], read.centre_covariance_mm2[0]];
     const centre = contact.force_N[0] ? contact.centre_mm[0] : [null, null];
-    const bend = this.picture.ball ? 1 / this.picture.ball[0] : 0;
+    const { round, turn, design } = this.picture;
+    const own = turn !== null ? [["Turn, °", turn, read.turn_deg[0], read.turn_uncertainty_deg[0]]] : round ? [] : ["x", "y"].map((each, k) => [`Slope along ${each}`, design[k], read.slope[0][k], read.slope_uncertainty[0][k]]);
     const rows = [
       ["Force, N", contact.force_N[0], read.force_N[0], read.force_uncertainty_N[0]],
       ["Centre x, mm", centre[0], x, Math.sqrt(across)],
       ["Centre y, mm", centre[1], y, Math.sqrt(up)],
-      ["Curvature, 1/mm", bend, read.curvature_per_mm[0], read.curvature_uncertainty_per_mm[0]],
-    ].map(([name, is, found, spread]) => [name, short(is, 3), short(found, 3), found === null ? "–" : `${short(name.startsWith("Centre") ? found - HALF * spread : Math.max(0, found - HALF * spread), 3)} to ${short(found + HALF * spread, 3)}`]);
+      ["Curvature, 1/mm", round ? 1 / round[0] : 0, read.curvature_per_mm[0], read.curvature_uncertainty_per_mm[0]],
+      ...own,
+    ].map(([name, is, found, spread]) => [name, short(is, 3), short(found, 3), found === null ? "–" : `${short(Math.max(/^(Force|Curvature)/.test(name) ? 0 : -Infinity, found - HALF * spread), 3)} to ${short(found + HALF * spread, 3)}`]);
     const row = (tag, cells) => element("tr", {}, ...cells.map((each) => element(tag, {}, each)));
     this.table.replaceChildren(element("thead", {}, row("th", ["figure", "true", "read", "95 % interval"])), element("tbody", {}, ...rows.map((cells) => row("td", cells))));
     const beyond = contact.force_N[0] ? "A cell is pressed beyond its range: what it reads there is not predicted. " : "No cell is touched. ";

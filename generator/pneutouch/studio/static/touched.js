@@ -23,7 +23,7 @@ export class PadPicture {
     new ResizeObserver(() => this.draw()).observe(this.host);
   }
 
-  /** Show a `pad` within `square` (ranges of x and y, mm), the `ball` (radius, depth) or a plate at `design` within `map`, and an `answer`. */
+  /** Show a `pad` within `square` (ranges of x and y, mm), what is `round` (radius, depth), a ball or a cylinder with its axis at `turn` (degrees), or a plate, at `design` within `map`, and an `answer`. */
   show(given) {
     Object.assign(this, given);
     this.draw();
@@ -72,12 +72,14 @@ export class PadPicture {
     this.chart(rises);
   }
 
-  /** The ball, and where it is lower than the tops; of a plate the way in which it rises. */
+  /** The ball or cylinder, and where it is lower than the tops; of a plate the way in which it rises. */
   object() {
     const [x, y] = this.at(this.design, [this.map.x.values, this.map.y.values]);
-    if (!this.ball) return twice("path", { d: `M${this.size / 2} ${this.size / 2}L${x} ${y}` });
-    const [radius, depth] = this.ball;
-    return [radius, Math.sqrt(Math.max(0, depth * (2 * radius - depth)))].flatMap((each, k) => twice("circle", { cx: x, cy: y, r: each * this.scale }, k ? "least" : ""));
+    if (!this.round) return twice("path", { d: `M${this.size / 2} ${this.size / 2}L${x} ${y}` });
+    const [radius, depth] = this.round;
+    const along = { d: `M${-2 * this.size} 0H${2 * this.size}` };
+    const lines = (half, look) => [half, -half].flatMap((way) => twice("path", { ...along, transform: `translate(${x} ${y}) rotate(${-this.turn}) translate(0 ${way})` }, look));
+    return [radius, Math.sqrt(Math.max(0, depth * (2 * radius - depth)))].flatMap((each, k) => (this.turn === null ? twice("circle", { cx: x, cy: y, r: each * this.scale }, k ? "least" : "") : lines(each * this.scale, k ? "least" : "")));
   }
 
   /** The true centre of the force as a cross; the one that is read as a dot, with the ellipse that holds 95 %. */

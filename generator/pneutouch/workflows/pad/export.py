@@ -1,13 +1,19 @@
-"""Export of a pad's reader, for a microcontroller and Python."""
+"""Export of a pad's reader, for a microcontroller and Python, and of its model for a simulator."""
 
 from pathlib import Path
 
+import numpy as np
+
 from pneutouch import __version__
+from pneutouch.errors import InputError, nearest
 from pneutouch.export.reader.pad_render import PadReaderSource, pad_reader_files
+from pneutouch.export.simulator.model import SimulatedDome, press_table, simulated_sensor
 from pneutouch.mechanics.touch.cell import TABLE_ERROR
 from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.output.files import digest, json_bytes, with_manifest, write_folder
 from pneutouch.units import KPA
+from pneutouch.workflows.export_reader import SIMULATORS, STEPS, readme
+from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.campaign import noise_kPa
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.touch import calibrated_model, pad_model, pad_pressure_kPa
@@ -29,3 +35,23 @@ def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path) -> Pa
     source = PadReaderSource(pad.name, pressure_kPa, calibration, __version__, made_of)
     name = f"{pad.name}-reader"
     return write_folder(out / name, with_manifest(pad_reader_files(table, source), name, {"table": made_of}))
+
+
+def write_pad_simulator(pad: ResolvedPad, kind: str, out: Path) -> Path:
+    """Write ``out/<pad>-<kind>/``: the pad for a simulator, one of `SIMULATORS`, as predicted at the greatest driving
+    pressure of the cell, each dome as under a level plate. Raises InputError as `pad_model`, and for another kind."""
+    if kind not in SIMULATORS:
+        raise InputError(f"unknown.{nearest(kind, SIMULATORS)}", key="simulator", value=kind)
+    model = pad_model(pad, pad_pressure_kPa(pad))
+    travel = np.linspace(0.0, float(model.table.plates.reach[0, 0]), STEPS + 1)
+    first, level = float(model.table.plates.first[0, 0]), np.zeros(len(travel))
+    answer = model.table.under_plate(level, first - travel)
+    domes = []
+    for number, (place, gain) in enumerate(zip(model.places, model.gain, strict=True), start=1):
+        press = first, travel, answer.force, float(gain) * answer.rise / KPA
+        table = press_table(round(model.table.driving_pressure / KPA, 6), *press)
+        domes.append(SimulatedDome(f"{pad.name}-{number}", 1e-3 * np.array([*place, 0.0]), (table,)))
+    density = pad.scene.membrane_material.density_g_per_cm3.nominal
+    sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.worst.sensor.dome.shape, density, tuple(domes))
+    files, name = {"README.md": readme(sensor, kind), **SIMULATORS[kind](sensor)}, f"{pad.name}-{kind}"
+    return write_folder(out / name, with_manifest(files, name, inputs(pad)))

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.mechanics.gauge_reading import PAPER_NOISE, gauge_reading
-from pneutouch.mechanics.touch.cell import BALLS, CellTable
+from pneutouch.mechanics.touch.cell import RADII, CellTable
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.mechanics.touch.reader_table import reader_table
@@ -83,7 +83,7 @@ def select_pads(target: PadTarget) -> list[PadTrial]:
             key=lambda n: max(target.area[0] * n / cells, target.area[1] / n),
         )
         pitch = max(target.area[0] * rows / cells, target.area[1] / rows)
-        tabulated = BALLS[0] <= target.ball / (similar_cell().radius * pitch / PITCH) <= BALLS[-1]
+        tabulated = RADII[0] <= target.ball / (similar_cell().radius * pitch / PITCH) <= RADII[-1]
         # More cells of the same pitch only reach beyond the area.
         finer = not grids or pitch < grids[-1][1] * (1.0 - 1e-9)
         if _PITCHES[0] <= pitch <= _PITCHES[1] and tabulated and finer:

@@ -13,7 +13,6 @@ from pneutouch.mechanics.models.local import cache_folder, fingerprint, store_ar
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.touch.cell import CellTable, cell_table
 from pneutouch.mechanics.touch.forward import PadModel
-from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.pad import PadCalibration
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.pad.load import ResolvedPad
@@ -27,13 +26,13 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate |
     the first time, most for thin walls; the table is then kept among those of `pneutouch table`. ``made_by`` stands in
     for `cell_table`.
 
-    Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a shape
-    other than a hemisphere, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
+    Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a dome
+    that is not round at its top, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
     cell = pad.worst
-    test = cell.sensor.protocol
-    why = no_hemisphere(cell.sensor.dome.shape) or test.other_contact
+    shape = cell.sensor.dome.shape
+    why = cell.sensor.protocol.other_contact if shape.domed else f"its dome is not round at its top: {shape.key}"
     if why is not None:
-        remedy = "contact with several cells is computed for hemispheres under frictionless objects"
+        remedy = "contact with several cells is computed for round domes under frictionless objects"
         raise InputError(f"of the cell {pad.file.pad.cell}: {why}", file=pad.where, key="pad.cell", remedy=remedy)
     if driving_pressure_kPa < 0.0:
         remedy = "give 0 or more"
