@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.api.pad import PadTouch
+from pneutouch.export.simulator.model import inertia_of
 from pneutouch.output.new_pad import new_pad
 from pneutouch.workflows.pad.export import write_pad_simulator
 from pneutouch.workflows.pad.load import load_pad
@@ -26,7 +27,7 @@ GRAVITY, CHANGES = 9.81, {"pneumatics.driving_pressures_kPa": [0.0, 12.0]}
 def folder(tmp_path_factory):
     with coarse_home(tmp_path_factory) as home:
         new_pad("tip", home / "designs", "row:3", 9.0)
-        yield write_pad_simulator(load_pad("tip", CHANGES), "mujoco", tmp_path_factory.mktemp("mujoco"))
+        yield write_pad_simulator(load_pad("tip", CHANGES), None, "mujoco", tmp_path_factory.mktemp("mujoco"))
 
 
 @pytest.fixture
@@ -74,9 +75,17 @@ def test_mass_is_that_of_the_print_and_every_dome_has_its_frame_in_urdf(folder, 
     model = mujoco.MjModel.from_xml_path(str(folder / "tip.xml"))
     pad = load_pad("tip", CHANGES)
     assert float(model.body_mass.sum()) == pytest.approx(1e-3 * sum(solid.mass for solid in pad.solids), rel=1e-6)
+    inertia = inertia_of(pad.bodies, pad.solids)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    parts = zip(model.body_mass, data.xipos, data.ximat.reshape(-1, 3, 3), model.body_inertia, strict=True)
+    found = sum(
+        turn @ np.diag(own) @ turn.T + mass * (at @ at * np.eye(3) - np.outer(at, at)) for mass, at, turn, own in parts
+    )
+    assert found == pytest.approx(inertia.about_origin, rel=1e-5, abs=1e-12)
     places = np.array([model.body(f"tip-{k}_dome").pos[:2] for k in (1, 2, 3)])
     assert 1e3 * places == pytest.approx(np.array(pad.layout.places), abs=1e-6)
-    written = write_pad_simulator(pad, "urdf", tmp_path)
+    written = write_pad_simulator(pad, None, "urdf", tmp_path)
     links = {link.get("name") for link in ElementTree.parse(written / "tip.urdf").iter("link")}
     assert links == {"tip", "tip_mount", "tip-1_contact", "tip-2_contact", "tip-3_contact"}
 

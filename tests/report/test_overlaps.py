@@ -47,8 +47,8 @@ def test_no_label_lies_over_a_curve_or_another_label(name, sheet_of):
     with overlaps() as (found, labels):
         described(sheet)
     assert found == []
-    # The sheet of one driving pressure has the fewest.
-    assert sum(labels) > 120
+    # Few driving pressures have fewer labels.
+    assert sum(labels) > (150 if len(sheet.prediction.states) > 2 else 120)
 
 
 def test_the_check_finds_a_label_over_a_curve_and_over_another():

@@ -100,18 +100,16 @@ def export_a_pad(
     from pneutouch.workflows.pad.export import write_pad_reader, write_pad_simulator
     from pneutouch.workflows.pad.load import load_pad
 
-    _refuse_others(context, name, "design", "set_", "calibration" if simulator is None else "simulator", "out")
-    if simulator is not None:
-        with bar("tabulating a cell"):
-            folder = write_pad_simulator(load_pad(name, changes(set_)), simulator, out)
-        echo(str(folder))
-        notify(f"how to use it: {folder / 'README.md'}")
-        return
+    _refuse_others(context, name, "design", "set_", "calibration", "simulator", "out")
+    pad = load_pad(name, changes(set_))
     with bar("tabulating a cell"):
-        folder = write_pad_reader(load_pad(name, changes(set_)), calibration, out)
+        if simulator is None:
+            folder = write_pad_reader(pad, calibration, out)
+        else:
+            folder = write_pad_simulator(pad, calibration, simulator, out)
     echo(str(folder))
     files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
-    notify(f"how to use it: the examples at the head of {files}")
+    notify(f"how to use it: {f'the examples at the head of {files}' if files else folder / 'README.md'}")
 
 
 def select_a_pad(

@@ -108,21 +108,12 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
     radius, steep = pad.layout.cell.inner_radius, math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3
     least, most = math.ceil(1e3 * RADII[0] * radius) / 1e3, math.floor(1e3 * RADII[-1] * radius) / 1e3
     pressures_kPa = pad.scene.design.pneumatics.driving_pressures_kPa
-    first = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0])
+    first, deep = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0]), round(0.6 * depth, 1)
     pressures = [f"{one_kPa:g}" for one_kPa in pressures_kPa]
     rows: list[tuple[Any, ...]] = [
         ("pressure", "Driving pressure", "kPa", None, None, f"{first:g}", "Those of the cell's design.", pressures),
         ("object", "Object", "", None, None, "ball", "What touches the pad.", list(_OBJECTS)),
-        (
-            "depth_mm",
-            "Depth",
-            "mm",
-            0.0,
-            1.5 * depth,
-            round(0.6 * depth, 1),
-            "Below the tops of the inflated domes.",
-            [],
-        ),
+        ("depth_mm", "Depth", "mm", 0.0, 1.5 * depth, deep, "Below the tops of the inflated domes.", []),
         ("radius_mm", "Radius", "mm", least, most, round(2.0 * least, 1), "A larger one is a plate.", []),
         ("x_mm", "At x", "mm", x - half, x + half, round(x + 0.2 * half, 1), "Place of its axis.", []),
         ("y_mm", "At y", "mm", y - half, y + half, round(y + 0.15 * half, 1), "Place of its axis.", []),

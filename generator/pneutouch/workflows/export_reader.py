@@ -1,6 +1,6 @@
 """Export of a sensor's pressure-to-force model for a microcontroller and Python, and of its model for a simulator."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -83,7 +83,7 @@ def write_reader(result: ReaderResult, out: Path) -> Path:
     return write_folder(out / result.name, with_manifest(files, result.name, result.document["source"]))
 
 
-def readme(sensor: SimulatedSensor, kind: str) -> bytes:
+def _readme(sensor: SimulatedSensor, kind: str) -> bytes:
     """README of a simulator's model of ``kind``."""
     table, pad = sensor.tables[0], "-pad" if len(sensor.domes) > 1 else ""
     text = (
@@ -103,8 +103,16 @@ def readme(sensor: SimulatedSensor, kind: str) -> bytes:
     return text.encode()
 
 
-SIMULATORS = {"mujoco": mjcf_files, "urdf": urdf_files}
+_SIMULATORS = {"mujoco": mjcf_files, "urdf": urdf_files}
 """Functions that make the files of a simulator's model, by the name of its format."""
+
+
+def simulator_files(kind: str) -> Callable[[SimulatedSensor], dict[str, bytes]]:
+    """Function that makes the files of a model for the simulator ``kind``, by path. Raises InputError for no such."""
+    if kind not in _SIMULATORS:
+        raise InputError(f"unknown.{nearest(kind, _SIMULATORS)}", key="simulator", value=kind)
+    return lambda sensor: {"README.md": _readme(sensor, kind), **_SIMULATORS[kind](sensor)}
+
 
 STEPS = 80
 """Steps of a press: above a fiftieth of the range, the spline through them is within 1 % of the model."""
@@ -123,19 +131,19 @@ class SimulatorResult:
 
 
 def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
-    """Model of an evaluated design's sensor for the simulator ``kind``, one of `SIMULATORS`.
+    """Model of an evaluated design's sensor for the simulator ``kind``, one that `simulator_files` knows.
 
     Raises InputError for another simulator and for contact off the axis, ComputationError where a press has no range.
     """
-    if kind not in SIMULATORS:
-        raise InputError(f"unknown.{nearest(kind, SIMULATORS)}", key="simulator", value=kind)
+    made_by = simulator_files(kind)
     off_axis = evaluation.sensor.protocol.off_axis
     if off_axis is not None:
         raise InputError(off_axis, key="simulator", value=kind, remedy="the joint of the model moves along the axis")
     sensor = _simulated(evaluation)
-    files = {"README.md": readme(sensor, kind), **SIMULATORS[kind](sensor)}
     name = f"{sensor.name}-{kind}"
-    return SimulatorResult(name, _record(evaluation, sensor, kind), files, BuildRecipe.of(evaluation).inputs())
+    return SimulatorResult(
+        name, _record(evaluation, sensor, kind), made_by(sensor), BuildRecipe.of(evaluation).inputs()
+    )
 
 
 def _simulated(evaluation: Evaluation) -> SimulatedSensor:

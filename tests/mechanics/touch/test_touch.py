@@ -180,6 +180,22 @@ def test_force_and_place_are_within_their_intervals(pad, table, kind, error):
     assert np.nanmedian(np.abs(told[0] / answer.force - 1.0)) < error
 
 
+@pytest.mark.parametrize(("kind", "columns"), [("plate", (9, 10)), ("cylinder", (13,))])
+def test_how_a_plate_or_cylinder_lies_is_within_what_is_told(pad, table, kind, columns):
+    """Slopes along x and y, and the angle of an axis to x, of those that are named."""
+    objects = random_objects(pad, kind, 60, np.random.default_rng(4))
+    lies = objects[:, :2].T if kind == "plate" else (objects[:, :1].T + 0.5 * np.pi) % np.pi
+    kinds, told = read(table, answer_of(pad, kind, objects).rise)
+    sure, half = kinds == kind, 0.5 * np.pi
+    assert sure.sum() >= 15
+    for known, column in zip(lies, columns, strict=True):
+        off = (told[column] - known + half) % np.pi - half
+        spread = told[column + len(columns)]
+        assert (np.abs(off)[sure] <= 4.0 * spread[sure] + 1e-3).mean() > 0.85
+        assert np.median(np.abs(off)[sure]) < 0.1
+        assert np.isnan(told[column][~sure]).all()
+
+
 @pytest.mark.slow
 def test_intervals_hold_as_often_as_they_say(pad, table):
     """Of 1,200 random contacts; the region of a place is no ellipse, and fits of few starts miss part of it."""
@@ -235,8 +251,8 @@ def test_information_grows_with_quiet_gauges_and_is_least_where_one_cell_is_touc
     assert quiet.place[1] > 2.5 * quiet.place[0]
 
 
-@pytest.mark.parametrize(("kind", "least"), [("ball", 0.4), ("plate", 0.1), ("cylinder", 0.2)])
-def test_what_a_reading_leaves_is_what_information_says(pad, table, kind, least):
+@pytest.mark.parametrize(("kind", "least", "most"), [("ball", 0.4, 2.0), ("plate", 0.1, 1.5), ("cylinder", 0.2, 2.0)])
+def test_what_a_reading_leaves_is_what_information_says(pad, table, kind, least, most):
     """Errors over the standard deviations that the information gives, in the median; plates err by less than is counted,
     and readings of balls and cylinders leave open which of both it is."""
     answer, rise = readings(pad, kind, 80, 9)
@@ -245,7 +261,7 @@ def test_what_a_reading_leaves_is_what_information_says(pad, table, kind, least)
     told = read(table, rise)[1]
     away = np.hypot(*(told[2:4].T - answer.centre).T)
     for errors, spread in ((np.abs(told[0] - answer.force), known.force), (away, known.place)):
-        assert least < np.nanmedian(errors) / np.median(spread) < 2.5
+        assert least < np.nanmedian(errors) / np.median(spread) < most
 
 
 @pytest.mark.slow

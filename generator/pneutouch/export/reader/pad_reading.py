@@ -18,8 +18,8 @@ STEPS = 5
 SETTLED = 0.01
 """Decrease of the square sum of residuals in a step below which a fit ends."""
 HOPELESS = 100.0
-"""Square sum of residuals, over the least of the fits before and over the number of cells, from which a fit ends after
-its first steps."""
+"""Square sum of residuals, over that of the best fit before it and over the number of cells, from which a fit ends
+after two steps."""
 MISFIT = 5.0
 """Greatest mean square of the residuals by cell, in standard deviations, of an object that explains a reading."""
 SURE = 0.95
@@ -236,8 +236,8 @@ class PadForceReader:
 
     def _told(self, fits: Sequence[_Fit]) -> TouchReading:
         """The fits by their weights as one answer."""
-        top = max(fit.log_weight for fit in fits)
-        weights = [math.exp(fit.log_weight - top) for fit in fits]
+        best = max(fits, key=lambda fit: fit.log_weight)
+        weights = [math.exp(fit.log_weight - best.log_weight) for fit in fits]
         whole = sum(weights)
         weights = [weight / whole for weight in weights]
         inside = sum(weight for weight, fit in zip(weights, fits, strict=True) if fit.inside)
@@ -257,7 +257,6 @@ class PadForceReader:
             ]
             for i in range(4)
         ]
-        best = max(fits, key=lambda fit: fit.log_weight)
         sure = sum(weight for weight, fit in pairs if fit.kind == best.kind) > SURE
         radius = self.table["radius_mm"]
         bend = mean[3] / radius, math.sqrt(spread[3][3]) / radius

@@ -31,6 +31,7 @@ def pad_reader_files(table: Mapping[str, Any], source: PadReaderSource) -> dict[
     header = environment.get_template("pad_reader.h.j2").render(
         record=record,
         c=name,
+        kinds=pad_reading.KINDS,
         of_kind=pad_reading.STARTS,
         fits=sum(pad_reading.STARTS),
         steps=pad_reading.STEPS,

@@ -127,7 +127,7 @@ class PadPage extends JobPage {
     try {
       const known = await Job.known("pad");
       this.running(known?.running ? known : new Job("pad", { question }));
-      this.report(`The cell is tabulated at ${this.text("touch.pressure")} kPa: about half a minute of processor time, once, for the table is kept.`, true);
+      this.report(`The cell is tabulated at ${this.text("touch.pressure")} kPa: two minutes of processor time and more for a thin wall, once, for the table is kept.`, true);
       const done = await this.job.done;
       this.running(null);
       if (done) this.changed({});

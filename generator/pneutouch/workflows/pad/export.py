@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch import __version__
-from pneutouch.errors import InputError, nearest
 from pneutouch.export.reader.pad_render import PadReaderSource, pad_reader_files
 from pneutouch.export.simulator.model import SimulatedDome, press_table, simulated_sensor
 from pneutouch.mechanics.touch.cell import TABLE_ERROR
+from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.output.files import digest, json_bytes, with_manifest, write_folder
 from pneutouch.units import KPA
-from pneutouch.workflows.export_reader import SIMULATORS, STEPS, readme
+from pneutouch.workflows.export_reader import STEPS, simulator_files
 from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.campaign import noise_kPa
 from pneutouch.workflows.pad.load import ResolvedPad
@@ -22,13 +22,7 @@ from pneutouch.workflows.pad.touch import calibrated_model, pad_model, pad_press
 def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path) -> Path:
     """Write ``out/<pad>-reader/``: header of C99 and Python module, by a calibration or as predicted at the greatest
     driving pressure of the cell. The same input gives the same bytes. Raises InputError as `calibrated_model`."""
-    error = TABLE_ERROR / 3.0
-    if calibration is None:
-        model = pad_model(pad, pad_pressure_kPa(pad))
-    else:
-        # A fit to one ball does not lessen the error of the table for others.
-        model, known = calibrated_model(pad, calibration)
-        error = max(error, known.model_error)
+    model, error = _model(pad, calibration)
     table = reader_table(model, noise_kPa(pad), error)
     made_of = digest(json_bytes(table))
     pressure_kPa = round(model.table.driving_pressure / KPA, 6)
@@ -37,12 +31,21 @@ def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path) -> Pa
     return write_folder(out / name, with_manifest(pad_reader_files(table, source), name, {"table": made_of}))
 
 
-def write_pad_simulator(pad: ResolvedPad, kind: str, out: Path) -> Path:
-    """Write ``out/<pad>-<kind>/``: the pad for a simulator, one of `SIMULATORS`, as predicted at the greatest driving
-    pressure of the cell, each dome as under a level plate. Raises InputError as `pad_model`, and for another kind."""
-    if kind not in SIMULATORS:
-        raise InputError(f"unknown.{nearest(kind, SIMULATORS)}", key="simulator", value=kind)
-    model = pad_model(pad, pad_pressure_kPa(pad))
+def _model(pad: ResolvedPad, calibration: str | None) -> tuple[PadModel, float]:
+    """The forward model of a pad, and the error of its rises over the greatest."""
+    error = TABLE_ERROR / 3.0
+    if calibration is None:
+        return pad_model(pad, pad_pressure_kPa(pad)), error
+    # A fit to one ball does not lessen the error of the table for others.
+    model, known = calibrated_model(pad, calibration)
+    return model, max(error, known.model_error)
+
+
+def write_pad_simulator(pad: ResolvedPad, calibration: str | None, kind: str, out: Path) -> Path:
+    """Write ``out/<pad>-<kind>/``: the pad for a simulator as of `simulator_files`, by a calibration or as predicted as
+    its reader, each dome as under a level plate. Raises InputError as `calibrated_model` and `simulator_files`."""
+    made_by = simulator_files(kind)
+    model, _ = _model(pad, calibration)
     travel = np.linspace(0.0, float(model.table.plates.reach[0, 0]), STEPS + 1)
     first, level = float(model.table.plates.first[0, 0]), np.zeros(len(travel))
     answer = model.table.under_plate(level, first - travel)
@@ -53,5 +56,5 @@ def write_pad_simulator(pad: ResolvedPad, kind: str, out: Path) -> Path:
         domes.append(SimulatedDome(f"{pad.name}-{number}", 1e-3 * np.array([*place, 0.0]), (table,)))
     density = pad.scene.membrane_material.density_g_per_cm3.nominal
     sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.worst.sensor.dome.shape, density, tuple(domes))
-    files, name = {"README.md": readme(sensor, kind), **SIMULATORS[kind](sensor)}, f"{pad.name}-{kind}"
-    return write_folder(out / name, with_manifest(files, name, inputs(pad)))
+    name, follows_from = f"{pad.name}-{kind}", {**inputs(pad), "calibration": calibration}
+    return write_folder(out / name, with_manifest(made_by(sensor), name, follows_from))

@@ -22,8 +22,8 @@ Tabulate = Callable[[Sensor, float], CellTable]
 
 
 def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate | None = None) -> PadModel:
-    """Tabulate the cell of a pad on its flange at a driving pressure, in one to four minutes of processor time at
-    the first time, most for thin walls; the table is then kept among those of `pneutouch table`. ``made_by`` stands in
+    """Tabulate the cell of a pad on its flange at a driving pressure, in two minutes of processor time at
+    the first time, more for thin walls; the table is then kept among those of `pneutouch table`. ``made_by`` stands in
     for `cell_table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a dome
