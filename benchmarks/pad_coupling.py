@@ -59,7 +59,7 @@ class PadScene:
 
     def ours(self, table: CellTable, down: float) -> PadAnswer:
         """Our answer at the depths, counted from a plane ``down`` (mm) below the tops of the table's domes."""
-        model = PadModel(self.places, table, np.ones(len(self.places)))
+        model = PadModel.alike(self.places, table, np.ones(len(self.places)))
         return self.answer(model, np.array(self.depths) + down)
 
 

@@ -50,7 +50,7 @@ def main() -> None:
     table, seconds = timed(lambda: cell_table(cell_sensor(), PRESSURE_KPA * KPA))
     np.savez_compressed(SIMILAR, **{name: values.astype(np.float32) for name, values in table.arrays().items()})
     places = np.array(PadTable(cell="cell", layout="ring:7", pitch_mm=PITCH).places)
-    pad = PadModel(places, table, np.ones(len(places)))
+    pad = PadModel.alike(places, table, np.ones(len(places)))
     rows = {kind: _row(pad, kind) for kind in KINDS}
     outer = PITCH + RADIUS + WALL
     store("pads", {"contacts": rows, "table_s": seconds, "one_dome": _one_dome(outer), "outer_mm": outer})

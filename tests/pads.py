@@ -11,16 +11,17 @@ import pytest
 from pneutouch.mechanics.touch import cell as cells
 from pneutouch.mechanics.touch.cell import CellTable
 
-_COARSE = (("_ORDER", 4), ("_CELLS", 8), ("_STEPS", 6))
+_NAMES, _COARSE, _COARSEST = ("_ORDER", "_CELLS", "_STEPS"), (4, 8, 6), (2, 4, 4)
+"""What a table is made of; a home's is for what a pad does with it, and on the flange takes a third of the time."""
 
 
 @contextmanager
-def coarse_presses(**variables):
+def coarse_presses(values=_COARSE, **variables):
     """Coarse presses, with variables of the environment set."""
     with pytest.MonkeyPatch.context() as patch:
         for name, value in variables.items():
             patch.setenv(name, str(value))
-        for name, value in _COARSE:
+        for name, value in zip(_NAMES, values, strict=True):
             patch.setattr(cells, name, value)
         yield
 
@@ -29,7 +30,7 @@ def coarse_presses(**variables):
 def coarse_home(tmp_path_factory):
     """An empty home of a user, whose tables are coarse and shared by all files of a run."""
     home = tmp_path_factory.mktemp("pads")
-    with coarse_presses(PNEUTOUCH_HOME=home, XDG_CACHE_HOME=_shared(tmp_path_factory)):
+    with coarse_presses(_COARSEST, PNEUTOUCH_HOME=home, XDG_CACHE_HOME=_shared(tmp_path_factory)):
         yield home
 
 

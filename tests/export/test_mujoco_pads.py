@@ -10,8 +10,10 @@ import pytest
 from pneutouch.api.pad import PadTouch
 from pneutouch.export.simulator.model import inertia_of
 from pneutouch.output.new_pad import new_pad
+from pneutouch.spec.pad import PadCalibration
 from pneutouch.workflows.pad.export import write_pad_simulator
 from pneutouch.workflows.pad.load import load_pad
+from pneutouch.workflows.pad.measured_files import save_calibration
 from pneutouch.workflows.pad.touch import pad_model
 from tests.pads import coarse_home
 from tests.running import in_process
@@ -20,7 +22,8 @@ mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed; the deve
 
 from benchmarks.simulators import clear, module_of  # noqa: E402
 
-GRAVITY, CHANGES = 9.81, {"pneumatics.driving_pressures_kPa": [0.0, 12.0]}
+GRAVITY, HELD_KPA = 9.81, np.array([12.0, 5.0, 12.0])
+CHANGES = {"pneumatics.driving_pressures_kPa": [0.0, 12.0], "pad.groups": [{"cells": [2], "driving_pressure_kPa": 5.0}]}
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +53,7 @@ def put_down(folder):
             for what in ("pressure_kPa", "force_N", "indentation_m", "status")
         ]
         assert not any(read[3])
-        return np.array(read[0]) - 12.0, np.array(read[1]), 1e3 * np.array(read[2])
+        return np.array(read[0]) - HELD_KPA, np.array(read[1]), 1e3 * np.array(read[2])
 
     yield at_rest
     clear()
@@ -59,8 +62,11 @@ def put_down(folder):
 def test_a_board_that_lies_on_the_domes_is_carried_by_them_all(put_down):
     rises_kPa, forces, travels = put_down(mujoco.mjtGeom.mjGEOM_BOX, [0.02, 0.01, 0.002], [0, 0, 0.02], 0.12)
     assert forces.sum() == pytest.approx(0.12 * GRAVITY, rel=1e-3)
-    known = PadTouch(pad_model(load_pad("tip", CHANGES), 12.0)).plate(0.0, 0.0, travels[0])
-    assert travels == pytest.approx(travels[0], abs=1e-4)
+    pad = pad_model(load_pad("tip", CHANGES), 12.0)
+    high, low = (float(table.plates.first[0, 0]) for table in pad.tables)
+    known = PadTouch(pad).plate(0.0, 0.0, travels[0] + pad.top - high)
+    # A board of MuJoCo's own softness does not yield either.
+    assert high > low + 0.05 and np.add(travels, [0.0, high - low, 0.0]) == pytest.approx(travels[0], abs=1e-4)
     assert forces == pytest.approx(known.forces_N[0], rel=0.02)
     assert rises_kPa == pytest.approx(known.pressure_rises_kPa[0], rel=0.02)
 
@@ -85,13 +91,41 @@ def test_mass_is_that_of_the_print_and_every_dome_has_its_frame_in_urdf(folder, 
     assert found == pytest.approx(inertia.about_origin, rel=1e-5, abs=1e-12)
     places = np.array([model.body(f"tip-{k}_dome").pos[:2] for k in (1, 2, 3)])
     assert 1e3 * places == pytest.approx(np.array(pad.layout.places), abs=1e-6)
-    written = write_pad_simulator(pad, None, "urdf", tmp_path)
-    links = {link.get("name") for link in ElementTree.parse(written / "tip.urdf").iter("link")}
+    written = ElementTree.parse(write_pad_simulator(pad, None, "urdf", tmp_path) / "tip.urdf")
+    links = {link.get("name") for link in written.iter("link")}
     assert links == {"tip", "tip_mount", "tip-1_contact", "tip-2_contact", "tip-3_contact"}
+    frames = [joint for joint in written.iter("joint") if joint.find("child").get("link").endswith("_contact")]
+    at = np.array([joint.find("origin").get("xyz").split() for joint in frames], dtype=float)
+    tops = [float(table.plates.first[0, 0]) for table in pad_model(pad, 12.0).tables]
+    assert 1e3 * at == pytest.approx(np.column_stack([pad.layout.places, np.array(tops)[[0, 1, 0]]]), abs=1e-6)
+
+
+def test_a_calibrated_pad_has_its_factors(folder, tmp_path):
+    pad, factors = load_pad("tip", CHANGES), [1.1, 1.0, 0.9]
+    calibration = PadCalibration(
+        pad="tip",
+        places_mm=[list(place) for place in pad.layout.places],
+        driving_pressure_kPa=12.0,
+        force_factor=1.2,
+        force_factor_uncertainty=0.01,
+        rise_factors=factors,
+        rise_factor_uncertainties=[0.01] * 3,
+        model_error=0.02,
+        readings=9,
+        digest="0",
+    )
+    save_calibration(calibration, "mine", replace=True)
+    tables = [module_of(one).TABLES for one in (folder, write_pad_simulator(pad, "mine", "mujoco", tmp_path))]
+    ends = [[dome["states"][0] for dome in one] for one in tables]
+    for key, scale in (("force_N", 1.2), ("pressure_kPa", np.array(factors))):
+        before, after = (np.array([state[key][-1] for state in one]) for one in ends)
+        rest = 0.0 if key == "force_N" else HELD_KPA
+        assert after - rest == pytest.approx(scale * (before - rest), rel=1e-6)
 
 
 def test_the_command_writes_it_and_an_unknown_simulator_is_refused(folder, tmp_path):
-    given = ["export-reader", "tip", "--set", "pneumatics.driving_pressures_kPa=[0,12]", "--out", "."]
+    sets = ["pneumatics.driving_pressures_kPa=[0,12]", "pad.groups=[{cells=[2],driving_pressure_kPa=5}]"]
+    given = ["export-reader", "tip", *(word for one in sets for word in ("--set", one)), "--out", "."]
     made = in_process([*given, "--simulator", "mujoco"], tmp_path)
     assert made.returncode == 0 and (tmp_path / "tip-mujoco" / "README.md").is_file()
     assert (tmp_path / "tip-mujoco" / "tip.xml").read_bytes() == (folder / "tip.xml").read_bytes()

@@ -17,7 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.parts.pad import lay_out_pad, pad_solids
 from pneutouch.parts.pad.layout import rounded_hull
 from pneutouch.parts.pad.solids import line_volume
-from pneutouch.spec.pad import PadTable
+from pneutouch.spec.pad import PadGroup, PadTable
 
 SMALL = {
     "membrane.inner_radius_mm": 2.0,
@@ -34,14 +34,22 @@ CASES = {
         14.0,
         {**SMALL, "membrane.inner_radius_mm": 4.0, "membrane.shape": "disc", "connector.port": "luer-female"},
     ),
+    "domes of two sizes and walls": (
+        "grid:2x2",
+        15.0,
+        {**SMALL, "membrane.inner_radius_mm": 4.0, "connector.port": "barb-3x2"},
+        {"membrane.inner_radius_mm": 5.0, "membrane.wall_thickness_mm": 1.1, "membrane.shape": "ellipsoid"},
+    ),
     "palm": ("hex:19", 9.0, {**SMALL, "membrane.inner_radius_mm": 3.0, "connector.port": "barb-3x2"}),
 }
 
 
-def made(layout, pitch, changes):
-    scene = load_scene("paper-dome", changes)
-    pad = lay_out_pad(scene, PadTable(cell="paper-dome", layout=layout, pitch_mm=pitch), "here")
-    return scene, pad
+def made(layout, pitch, changes, others=None):
+    """A pad; of a group with other changes are cells 1 and 4."""
+    scenes = [load_scene("paper-dome", {**changes, **each}) for each in ({}, others) if each is not None]
+    groups = [PadGroup(cells=[1, 4])] * (others is not None)
+    table = PadTable(cell="paper-dome", layout=layout, pitch_mm=pitch, groups=groups)
+    return scenes[0], lay_out_pad(scenes[0], table, "here", scenes[1:])
 
 
 @pytest.fixture(params=CASES, scope="module")
@@ -100,6 +108,16 @@ def test_the_gas_of_a_cell_reaches_its_own_port_and_no_other():
     for k, number in enumerate(numbers):
         filled = pad.cell.port.filled_volume()
         assert (regions == number).sum() * step**3 == pytest.approx(line_volume(pad, k) + filled, rel=0.03)
+
+
+def test_a_group_has_domes_of_its_own_on_the_flange_of_the_thickest():
+    scene, pad = made(*CASES["domes of two sizes and walls"])
+    assert [dome.inner_radius for dome in pad.domes] == [5.0, 4.0, 4.0, 5.0]
+    assert {dome.plate_high for dome in pad.domes} == {-pad.domes[0].flange_thickness}
+    corners = pad_solids(scene, pad)[0].mesh(0.02).corners.reshape(-1, 3)
+    for (x, y), dome in zip(pad.places, pad.domes, strict=True):
+        over = corners[np.hypot(corners[:, 0] - x, corners[:, 1] - y) < dome.outer_radius]
+        assert over[:, 2].max() == pytest.approx(dome.shape.outer_height, abs=1e-6)
 
 
 @settings(max_examples=60, deadline=None)

@@ -45,7 +45,7 @@ def test_the_pad_is_drawn_as_it_is_laid_out(ask, client):
     shown, pad = ask("/api/pad").json(), pt.load_pad(NAME)
     assert np.allclose(shown["places_mm"], pad.places_mm)
     corners = np.array(shown["outline_mm"])
-    assert (np.abs(corners).max(axis=0) > np.abs(pad.places_mm).max(axis=0) + shown["dome_radius_mm"]).all()
+    assert (np.abs(corners).max(axis=0) > np.abs(pad.places_mm).max(axis=0) + max(shown["dome_radii_mm"])).all()
     fields = {field["name"]: field for field in shown["groups"][0]["fields"]}
     assert PRESSURE in [each["name"] for each in fields["touch.pressure"]["options"]]
     assert fields["touch.x_mm"]["high"] >= np.abs(corners).max()

@@ -81,17 +81,17 @@ def test_neighbours_that_meet_when_pressed_break_a_rule(home):
     started(home, "row:2", 17.0)
     changes = {"membrane.inner_radius_mm": 6.8}
     pad = load_pad("tip", changes)
-    assert 2.0 * widest(pad) > 17.0
+    assert 2.0 * widest(pad)[0] > 17.0
     (found,) = [one for one in pad_findings(pad) if one.rule == "neighbours"]
-    assert found.severity == "error" and found.excess.limit == pytest.approx(2.0 * widest(pad))
+    assert found.severity == "error" and found.excess.limit == pytest.approx(2.0 * widest(pad)[0])
     raised = load_pad("tip", changes | {"pad.pitch_mm": round(found.excess.limit + 0.1, 1)})
     assert not [one for one in pad_findings(raised) if one.rule == "neighbours"]
 
 
 def test_a_cell_is_the_sensor_of_its_design_behind_its_own_channel(home):
     pad = started(home)
-    alone = evaluate("tip-cell", {"pneumatics.dead_volume_mL": pad.dead_volumes_mL[3]})
-    ours = pad.evaluations[pad.dead_volumes_mL[3]].prediction.states[1]
+    alone = evaluate("tip-cell", {"pneumatics.dead_volume_mL": pad.dead_volumes_mL[3]}, clamp="flange")
+    ours = pad.evaluations[pad.kinds[3]].prediction.states[1]
     assert np.array_equal(ours.force, alone.prediction.states[1].force)
     tube = np.pi * (0.5 * pad.scene.tube.inner_diameter) ** 2 * pad.scene.design.pneumatics.tube_length_mm
     assert pad.dead_volumes_mL[3] == pytest.approx((line_volume(pad.layout, 3) + tube) / ML, abs=1e-4)
@@ -135,3 +135,48 @@ def test_a_pad_is_not_cast(home):
     with pytest.raises(InputError) as caught:
         started(home, process="casting")
     assert caught.value.key == "process"
+
+
+GROUPS = [
+    {"cells": [2, 5], "driving_pressure_kPa": 5.0},
+    {"cells": [1], "assignments": ["membrane.inner_radius_mm=1.6"]},
+]
+
+
+def test_groups_have_pressures_and_domes_of_their_own(home, tmp_path):
+    started(home)
+    folder, _ = build_pad("tip", tmp_path, {"pad.groups": GROUPS})
+    cells = json.loads((folder / "pad.json").read_text())["cells"]
+    held = [[state["driving_pressure_kPa"] for state in cell["states"]] for cell in cells]
+    assert held[1] == held[4] == [5.0] and held[0] == held[2] != [5.0]
+    # A smaller dome moves less of as much gas behind it.
+    assert cells[0]["states"][0]["sensitivity_kPa_per_N"] < cells[2]["states"][0]["sensitivity_kPa_per_N"]
+    corners = load_pad("tip", {"pad.groups": GROUPS}).bodies[0].corners.reshape(-1, 3)
+    lowest = corners[corners[:, 2] < corners[:, 2].min() + 1e-6, :2]
+    assert np.hypot(*(lowest - cells[0]["place_mm"]).T).min() == pytest.approx(1.6, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("group", "key", "words"),
+    [
+        ({"cells": [8]}, "groups", "1 to 7"),
+        ({"cells": [2, 2]}, "groups", "each once"),
+        ({"cells": list(range(1, 8))}, "groups", "leave out"),
+        ({"cells": [2], "assignments": ["membrane.material=FLX9950"]}, "pad.groups", "of all cells"),
+        ({"cells": [2], "assignments": ["connector.port=luer-female"]}, "pad.groups", "of all cells"),
+        ({"cells": [2], "assignments": ["membrane.inner_radius_mm"]}, "pad.groups", "table.key=value"),
+        ({"cells": [2], "assignments": ["membrane.inner_radius_mm=-1"]}, "membrane.inner_radius_mm", ""),
+    ],
+)
+def test_a_group_that_cannot_be_is_refused(home, group, key, words):
+    started(home)
+    with pytest.raises(InputError) as caught:
+        load_pad("tip", {"pad.groups": [group]})
+    assert key in str(caught.value) and words in str(caught.value)
+
+
+def test_neighbours_of_different_groups_meet_by_the_sum_of_their_radii(home):
+    started(home, "row:2", 17.0)
+    pad = load_pad("tip", {"pad.groups": [{"cells": [2], "assignments": ["membrane.inner_radius_mm=7.2"]}]})
+    (found,) = [one for one in pad_findings(pad) if one.rule == "neighbours"]
+    assert found.excess.limit == pytest.approx(sum(widest(pad))) and widest(pad)[0] < widest(pad)[1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import re
 
 import numpy as np
 import pytest
@@ -65,6 +66,17 @@ def test_the_fit_finds_what_was_simulated(plan, tmp_path, seed):
     assert (np.abs(fit.rise_factors - truth["rise_factors"]) < 3.5 * fit.of_rise_factors).all()
     assert np.allclose(fit.shift, truth["stage_zero_mm"], atol=0.1)
     assert fit.of_force_factor < 0.07 and fit.rise_error < 0.04
+
+
+def test_pads_are_compared_with_pads(home, tmp_path):
+    shown = in_process(["compare", "tip", "other", "--set", AT], tmp_path)
+    rows = [re.split(r" {2,}", line) for line in shown.stdout.splitlines()]
+    assert shown.returncode == 0 and rows[0][1:] == ["tip", "other"]
+    values = {key: [float(text.replace(",", " ").split()[0]) for text in texts] for key, *texts in rows[1:]}
+    assert values["pitch, mm"] == [9.0, 10.0] and values["mass, g"][0] < values["mass, g"][1]
+    places = next(value for key, value in values.items() if "place" in key)
+    assert 0.0 < places[0] < places[1]
+    assert in_process(["compare", "tip", "paper-dome"], tmp_path).returncode == 2
 
 
 def test_presses_by_hand_alone_give_the_force(plan, folder):

@@ -35,6 +35,12 @@ def test_finer_pads_find_the_place_better(trials):
     assert max(one.force_error for one in trials) < 0.2
 
 
+def test_a_pad_that_is_too_high_does_not_meet(trials):
+    target = PadTarget((30.0, 20.0), 1.0, 100.0, 8.0, 12, height=5.0)
+    meets = [one.meets(target) for one in trials]
+    assert meets == [sum(one.sizes) <= 5.0 for one in trials] and set(meets) == {True, False}
+
+
 def test_a_noisier_gauge_reads_no_better(trials, monkeypatch):
     monkeypatch.setattr(pads, "_noise", lambda name: 0.1 * KPA)
     noisy = select_pads(PadTarget((30.0, 20.0), 0.1, 1.0, 8.0, 6))
@@ -57,6 +63,8 @@ def test_the_next_command_draws_the_pad_that_was_chosen(tmp_path, monkeypatch):
     assert in_process(words, tmp_path).returncode == 0
     assert in_process(["check", "mine"], tmp_path).returncode == 0
     assert in_process(["select", "--pad", "30x20", "--place-error", "0.01", "--gauges", "4"], tmp_path).returncode == 1
+    low = in_process(["select", "--pad", "30x20", "--place-error", "9", "--gauges", "6", "--max-height", "3"], tmp_path)
+    assert low.returncode == 1
     for wrong in (
         ["--pad", "30"],
         ["--gauges", "3"],

@@ -93,13 +93,13 @@ class PadTouch(Shown):
 
     @property
     def driving_pressure_kPa(self) -> float:
-        """Driving pressure of every cell."""
+        """Driving pressure of every cell that is in no group with one of its own."""
         return self._model.table.driving_pressure / KPA
 
     @property
     def depth_mm(self) -> float:
         """Greatest travel of an object on one cell."""
-        return self._model.table.depth
+        return self._model.depth
 
     @property
     def ball_radii_mm(self) -> tuple[float, float]:

@@ -3,8 +3,11 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import typer
+
 from pneutouch.cli import app as cli
 from pneutouch.cli.complete import parameters_of
+from pneutouch.cli.pad_commands import compare_pads, is_pad
 from pneutouch.cli.terminal import bar, report_next, set_words, table_text
 
 if TYPE_CHECKING:
@@ -15,6 +18,7 @@ parameter = parameters_of(__file__)
 
 @cli.app.command()
 def compare(
+    context: typer.Context,
     things: Annotated[list[str], parameter("things")],
     set_: cli.SetOption = None,
     model: cli.ModelOption = None,
@@ -25,6 +29,9 @@ def compare(
     json: cli.JsonOption = False,
 ) -> None:
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
+    if any(is_pad(thing) for thing in things):
+        compare_pads(context, things, set_)
+        return
     from pneutouch.mechanics.models.choice import model_options
     from pneutouch.workflows.compare import compare as run
     from pneutouch.workflows.compare import write

@@ -1,5 +1,6 @@
 """Pads in the commands of one sensor: plan, simulate, characterize, calibrate and export-reader."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.values import plain_number
 
 if TYPE_CHECKING:
+    from pneutouch.workflows.pad.load import ResolvedPad
     from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
 
 _WANTED = {"force_error": 10.0, "place_error": 1.0, "gauges": 12, "ball": 8.0}
@@ -113,22 +115,28 @@ def export_a_pad(
 
 
 def select_a_pad(
-    context: typer.Context, area: str, wanted: Mapping[str, float | None], gauge: str | None, charts: Path | None
+    context: typer.Context,
+    area: str,
+    wanted: Mapping[str, float | None],
+    gauge: str | None,
+    height: float | None,
+    charts: Path | None,
 ) -> None:
     """Find the pad with the fewest cells that reads force and place as well as wanted; exit 1 if there is none."""
     from pneutouch.workflows.pad.select_pads import PadTarget, select_pads, write_pad_chart
 
-    _refuse_others(context, f"--pad {area}", *_WANTED, "pad", "gauge", "charts")
+    _refuse_others(context, f"--pad {area}", *_WANTED, "pad", "gauge", "max_height", "charts")
     try:
         width, depth = (plain_number(text) for text in area.lower().split("x"))
     except ValueError:
         raise InputError("write width and depth in mm", key="pad", value=area, remedy="such as 30x20") from None
     values = {key: _WANTED[key] if value is None else value for key, value in wanted.items()}
-    for key, value in {**values, "pad": min(width, depth)}.items():
+    most = math.inf if height is None else height
+    for key, value in {**values, "pad": min(width, depth), "max_height": most}.items():
         if not value > 0.0:
             raise InputError("must be more than 0", key=key, value=value)
     force, place, ball = values["force_error"] / 100.0, values["place_error"], values["ball"]
-    target = PadTarget((width, depth), force, place, ball, int(values["gauges"]), gauge)
+    target = PadTarget((width, depth), force, place, ball, int(values["gauges"]), gauge, most)
     with bar("reading balls on pads"):
         trials = select_pads(target)
     rows = [_row(one, target) for one in trials]
@@ -151,6 +159,51 @@ def _row(one: "PadTrial", target: "PadTarget") -> list[str]:
     forms = ("%.3g", "%.2f", "%.1f", "%.2f", "%.0f")
     texts = [form % number for form, number in zip(forms, numbers, strict=True)]
     return [one.layout, *texts, "yes" if one.meets(target) else ""]
+
+
+def compare_pads(context: typer.Context, names: list[str], set_: list[str] | None) -> None:
+    """Print sizes, figures and resolution of pads side by side."""
+    from pneutouch.workflows.pad.load import load_pad
+
+    _refuse_others(context, names[0], "things", "set_")
+    for name in names:
+        if not is_pad(name):
+            raise InputError("is no pad", key="things", value=name, remedy="compare pads with pads")
+    with bar("tabulating cells"):
+        columns = [_compared(load_pad(name, changes(set_))) for name in names]
+    keys = dict.fromkeys(key for column in columns for key in column)
+    echo(table_text(["", *names], [[key, *(column.get(key, "") for column in columns)] for key in keys]))
+
+
+def _compared(pad: "ResolvedPad") -> dict[str, str]:
+    """Values of a pad by what they are: those of its record, and what a reading of a ball leaves open."""
+    import numpy as np
+
+    from pneutouch.mechanics.touch.objects import random_objects
+    from pneutouch.mechanics.touch.resolution import resolution
+    from pneutouch.units import KPA
+    from pneutouch.workflows.pad.campaign import noise_kPa
+    from pneutouch.workflows.pad.pad_sheet import pad_record
+    from pneutouch.workflows.pad.touch import pad_model, pad_pressure_kPa
+
+    record, model = pad_record(pad), pad_model(pad, pad_pressure_kPa(pad))
+    balls = random_objects(model, "ball", 1000, np.random.default_rng(1))
+    left = resolution(model, "ball", balls, noise_kPa(pad) * KPA)
+    values = {
+        "cells": f"{len(record.cells)}, {record.layout}",
+        "pitch, mm": f"{record.pitch_mm:.3g}",
+        "size, mm": "{:.1f} x {:.1f}".format(*record.width_mm),
+        "manifold, mm": f"{record.thickness_mm:.3g}",
+        "mass, g": f"{sum(solid.mass for solid in pad.solids):.3g}",
+        "force of a ball +-, N, median": f"{np.median(left.force):.2g}",
+        "its place +-, mm, median": f"{np.median(left.place):.2g}",
+    }
+    for cell in record.cells:
+        for one in cell.states:
+            if one.sensitivity_kPa_per_N is not None:
+                figures = f"{one.sensitivity_kPa_per_N:.3g}, to {one.force_range_end_N:.3g} N"
+                values.setdefault(f"a cell at {one.driving_pressure_kPa:g} kPa, kPa/N", figures)
+    return values
 
 
 def _refuse_others(context: typer.Context, name: str, *ours: str) -> None:

@@ -112,7 +112,7 @@ def select(
     """Find designs for a target; exit 1 if there is none."""
     wanted = {"force_error": force_error, "place_error": place_error, "gauges": gauges, "ball": ball}
     if pad is not None:
-        select_a_pad(context, pad, wanted, fields["gauge"], charts)
+        select_a_pad(context, pad, wanted, fields["gauge"], fields["max_height"], charts)
         return
     for key, value in wanted.items():
         if value is not None:

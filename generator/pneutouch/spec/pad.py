@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pneutouch.spec.design import DocumentHead
 from pneutouch.spec.fields import EntryError, FieldsError, SparseTable, Table, number
+from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.spec.values import plain_name
 
 MOST_CELLS = 64
@@ -32,10 +33,31 @@ def _points(points: list[list[float]]) -> list[list[float]]:
     return points
 
 
+class PadGroup(SparseTable):
+    """[[pad.groups]]: cells that differ from the others in dome or driving pressure."""
+
+    left_out = ("driving_pressure_kPa", "assignments")
+
+    cells: list[int] = Field(min_length=1, max_length=MOST_CELLS, description="Numbers of its cells, from 1.")
+    driving_pressure_kPa: float | None = number(
+        None, unit="kPa", low=0, high=1000, help="Driving pressure that these cells hold; left out: as the others."
+    )
+    assignments: list[str] = Field(
+        default=[], description="Changes of the cell's design for these, of [membrane] and [indentation]."
+    )
+
+    @property
+    def changes(self) -> Changes:
+        """Changes of the cell's design by key. Raises InputError."""
+        held = self.driving_pressure_kPa
+        given = {} if held is None else {"pneumatics.driving_pressures_kPa": [held]}
+        return {**parse_changes(self.assignments), **given}
+
+
 class PadTable(SparseTable):
     """[pad]: which sensor, how many of it, and where."""
 
-    left_out = ("points_mm", "thickness_mm")
+    left_out = ("points_mm", "thickness_mm", "groups")
 
     cell: Annotated[str, AfterValidator(plain_name)] = Field(description="Design of each cell, by name.")
     layout: Annotated[str, AfterValidator(_layout)] = Field(default="ring:7", description=f"Pattern: {_FORMS}.")
@@ -54,14 +76,35 @@ class PadTable(SparseTable):
         high=100,
         help="Thickness of the manifold under the membrane; left out: the least in which every channel has its way.",
     )
+    groups: list[PadGroup] = Field(
+        default=[],
+        max_length=MOST_CELLS,
+        description="Cells that differ: each a [[pad.groups]] with cells, driving_pressure_kPa, assignments.",
+    )
 
     @model_validator(mode="after")
     def _points_and_layout(self) -> "PadTable":
         if (self.layout == "points") == (self.points_mm is None):
             given = "without" if self.points_mm is None else "is for"
             problem = f'points_mm is the list of a layout = "points": {self.layout} {given} points_mm'
-            raise FieldsError(problem, "pad.layout", "pad.points_mm")
+            raise FieldsError(problem, "layout", "points_mm")
         return self
+
+    @model_validator(mode="after")
+    def _groups_of_cells(self) -> "PadTable":
+        numbers, count = [number for group in self.groups for number in group.cells], len(self.places)
+        if any(not 1 <= number <= count for number in numbers) or len(set(numbers)) < len(numbers):
+            raise FieldsError(f"groups have cells from 1 to {count}, each once: {numbers}", "groups", "layout")
+        if len(numbers) == count:
+            problem = "groups hold every cell: leave out those of the cell as it is, or change its design"
+            raise FieldsError(problem, "groups", "cell")
+        return self
+
+    @property
+    def group_of(self) -> tuple[int, ...]:
+        """For each cell the number of its group, from 1; 0 for one in none."""
+        groups = {number: k for k, group in enumerate(self.groups, start=1) for number in group.cells}
+        return tuple(groups.get(number, 0) for number in range(1, len(self.places) + 1))
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:

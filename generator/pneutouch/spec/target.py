@@ -65,7 +65,7 @@ class TargetFigures(SparseTable):
         unit="mm",
         low=0.2,
         high=300,
-        help="Greatest height of the dome over its flange; for a search over shapes.",
+        help="Greatest height of the dome over its flange; for a search over shapes, and for pads.",
     )
     fits: str | None = Field(
         default=None,

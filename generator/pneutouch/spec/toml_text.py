@@ -107,7 +107,7 @@ def _entry(entry: Declaration, default: Any) -> list[str]:
     names = f" One of the {entry.registry}: see pneutouch list." if entry.registry else ""
     names += f" One of: {', '.join(entry.one_of.names())}." if entry.one_of else ""
     comment = textwrap.wrap(f"{entry.help}{bounds}{names}", width=96)
-    value = f"# {entry.key} =" if default is None else f"{entry.key} = {value_text(default)}"
+    value = f"# {entry.key} =" if default in (None, []) else f"{entry.key} = {value_text(default)}"
     if entry.one_of and default == entry.default:
         # As in a dump, where the usual one is left out.
         value = f"# {value}"

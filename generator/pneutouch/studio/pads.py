@@ -54,9 +54,9 @@ class Pads:
         self._pads[name] = pad = load_pad(name, library=self._library)
         self._touches.clear()
         corners = np.round(polygon(pad.layout.membrane_outline, 0.02), 3)
-        places, radius = pad.layout.places, pad.layout.cell.outer_radius
+        places, radii = pad.layout.places, [dome.outer_radius for dome in pad.layout.domes]
         groups = [FormGroup("touch", _fields(pad))]
-        return {"outline_mm": corners, "places_mm": places, "dome_radius_mm": radius, "groups": groups}
+        return {"outline_mm": corners, "places_mm": places, "dome_radii_mm": radii, "groups": groups}
 
     def given(self, question: Question) -> tuple[ResolvedPad, Mapping[str, Any]]:
         """The pad of a question, and by key what its form says. Raises InputError at the field."""
@@ -101,12 +101,15 @@ def _missing(sensor: Sensor, pressure: float) -> CellTable:
 
 def _fields(pad: ResolvedPad) -> list[FormField]:
     """The form of what touches a pad; places and slopes have equal ranges along x and y, so that a map is square."""
-    corners, depth = np.array(polygon(pad.layout.membrane_outline, 0.02)), pad.worst.sensor.protocol.depth
+    corners, depth = np.array(polygon(pad.layout.membrane_outline, 0.02)), pad.scene.design.depth_mm
     low, high = corners.min(axis=0), corners.max(axis=0)
     half, (x, y) = math.ceil(0.5 * (high - low).max() + 1.0), np.round(0.5 * (low + high)).tolist()
     # Rounded inwards.
-    radius, steep = pad.layout.cell.inner_radius, math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3
-    least, most = math.ceil(1e3 * RADII[0] * radius) / 1e3, math.floor(1e3 * RADII[-1] * radius) / 1e3
+    radii, steep = (
+        [dome.inner_radius for dome in pad.layout.domes],
+        math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3,
+    )
+    least, most = math.ceil(1e3 * RADII[0] * max(radii)) / 1e3, math.floor(1e3 * RADII[-1] * min(radii)) / 1e3
     pressures_kPa = pad.scene.design.pneumatics.driving_pressures_kPa
     first, deep = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0]), round(0.6 * depth, 1)
     pressures = [f"{one_kPa:g}" for one_kPa in pressures_kPa]

@@ -85,19 +85,19 @@ def write_reader(result: ReaderResult, out: Path) -> Path:
 
 def _readme(sensor: SimulatedSensor, kind: str) -> bytes:
     """README of a simulator's model of ``kind``."""
-    table, pad = sensor.tables[0], "-pad" if len(sensor.domes) > 1 else ""
+    tables, pad = [table for dome in sensor.domes for table in dome.tables], "-pad" if len(sensor.domes) > 1 else ""
     text = (
         (TEXTS / "templates" / f"{kind}{pad}.md")
         .read_text(encoding="utf-8")
         .format(
             name=sensor.name,
             count=len(sensor.domes),
-            pressure=f"{table.driving_pressure_kPa:g}",
-            pressures=", ".join(f"{one.driving_pressure_kPa:g}" for one in sensor.tables),
-            depth=f"{1e3 * min(one.indentation[-1] for one in sensor.tables):.2f}",
+            pressure=f"{tables[0].driving_pressure_kPa:g}",
+            pressures=", ".join(f"{one_kPa:g}" for one_kPa in sorted({one.driving_pressure_kPa for one in tables})),
+            depth=f"{1e3 * min(one.indentation[-1] for one in tables):.2f}",
             mass=1e3 * sensor.inertia.mass,
             rear=1e3 * sensor.rear,
-            apex=1e3 * table.apex,
+            apex=1e3 * tables[0].apex,
         )
     )
     return text.encode()

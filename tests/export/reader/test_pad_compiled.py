@@ -50,12 +50,13 @@ int main(void)
 """
 
 
-@pytest.fixture(scope="module")
-def pad(tmp_path_factory):
+@pytest.fixture(scope="module", params=["alike", "of two kinds"])
+def pad(request, tmp_path_factory):
     table = coarse_table(evaluate("paper-dome", CELL).sensor, PRESSURE, tmp_path_factory)
-    return PadModel(
-        np.array(PadTable(cell="c", layout="ring:7", pitch_mm=9.0).places), table, np.linspace(0.95, 1.05, 7)
-    )
+    places, gain = np.array(PadTable(cell="c", layout="ring:7", pitch_mm=9.0).places), np.linspace(0.95, 1.05, 7)
+    if request.param == "alike":
+        return PadModel.alike(places, table, gain)
+    return PadModel(places, (table, table.scaled(1.15, 1.4)), np.array([0, 1, 0, 0, 1, 1, 0]), gain)
 
 
 @pytest.fixture(scope="module")

@@ -49,7 +49,37 @@ def coarse(sensor, tmp_path_factory):
 @pytest.fixture(scope="module")
 def pad(coarse):
     places = np.array(PadTable(cell="c", layout="ring:7", pitch_mm=9.0).places)
-    return PadModel(places, coarse, np.ones(7))
+    return PadModel.alike(places, coarse, np.ones(7))
+
+
+@pytest.fixture(scope="module")
+def mixed(pad, coarse):
+    """Of three cells another, larger and with a stiffer wall."""
+    return PadModel(pad.places, (coarse, coarse.scaled(1.15, 1.4)), np.array([0, 1, 0, 0, 1, 1, 0]), pad.gain)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_cell_answers_by_its_own_table_at_the_height_of_the_object(pad, mixed, kind):
+    objects = random_objects(mixed, kind, 200, np.random.default_rng(8))
+    both, lower = answer_of(mixed, kind, objects), objects.copy()
+    lower[:, -1] -= mixed.top - pad.top
+    own = answer_of(pad, kind, lower)
+    assert np.allclose(both.rise[:, mixed.kind == 0], own.rise[:, mixed.kind == 0])
+    larger = PadModel.alike(pad.places, mixed.tables[1], pad.gain)
+    radius = mixed.table.radius / objects[:, 2] if kind != "plate" else None
+    under = {"ball": larger.under_balls, "plate": larger.under_plates, "cylinder": larger.under_cylinders}[kind]
+    other = under(objects[:, :2], *([] if radius is None else [radius]), objects[:, -1])
+    assert np.allclose(both.rise[:, mixed.kind == 1], other.rise[:, mixed.kind == 1])
+    assert both.force == pytest.approx(both.forces.sum(axis=1))
+    assert (both.rise[:, mixed.kind == 0].max() > 0.0) and (both.rise[:, mixed.kind == 1].max() > 0.0)
+
+
+@pytest.mark.parametrize(("kind", "error"), [("ball", 0.08), ("plate", 0.01), ("cylinder", 0.06)])
+def test_force_and_place_are_within_their_intervals_where_cells_differ(mixed, kind, error):
+    answer, rise = readings(mixed, kind, 60, 3)
+    told = read(reader_table(mixed, NOISE / KPA), rise)[1]
+    assert (np.abs(told[0] - answer.force) <= 2.0 * told[1] + 1e-3).mean() > 0.85
+    assert np.nanmedian(np.abs(told[0] / answer.force - 1.0)) < error
 
 
 @pytest.mark.parametrize("size", [1.0, 3.0, 15.0])
@@ -120,7 +150,7 @@ def test_a_cylinder_along_a_row_presses_its_cells_alike_and_across_it_as_a_plate
 
 
 def test_the_force_under_a_cylinder_beside_a_cell_is_across_its_axis(coarse):
-    pad = PadModel(np.zeros((1, 2)), coarse, np.ones(1))
+    pad = PadModel.alike(np.zeros((1, 2)), coarse, np.ones(1))
     axis, size = np.array([[0.0, 1.5], [np.pi, 1.5]]), np.array([6.0, 6.0])
     right, left = pad.under_cylinders(axis, size, np.array([1.3, 1.3])).centre
     assert 0.0 < right[0] < 1.5 and left[0] == pytest.approx(-right[0]) and abs(right[1]) < 1e-6
@@ -134,7 +164,7 @@ def test_what_is_mirrored_reads_mirrored(pad):
 
 
 def test_gas_behind_a_cell_scales_its_reading(pad, coarse):
-    other = PadModel(pad.places, coarse, np.linspace(0.8, 1.2, 7))
+    other = PadModel.alike(pad.places, coarse, np.linspace(0.8, 1.2, 7))
     plate = np.zeros((1, 2)), np.array([1.0])
     assert np.allclose(other.under_plates(*plate).rise, np.linspace(0.8, 1.2, 7) * pad.under_plates(*plate).rise)
 

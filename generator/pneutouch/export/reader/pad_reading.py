@@ -185,28 +185,31 @@ class PadForceReader:
         table, rises, inside = self.table, [], True
         force = x = y = 0.0
         cos, sin = math.cos(at[0]), math.sin(at[0])
-        for (cell_x, cell_y), gain in zip(self.places, table["gains"], strict=True):
+        for (cell_x, cell_y), gain, number in zip(self.places, table["gains"], table["kinds"], strict=True):
+            cell = table["tables"][number]
             if kind != 1:
                 bend = min(max(at[2], table["bends"][0]), table["bends"][1])
-                to_x, to_y, height = at[0] - cell_x, at[1] - cell_y, table["apex_mm"] - at[3]
+                to_x, to_y, height = at[0] - cell_x, at[1] - cell_y, table["top_mm"] - at[3]
                 if kind == 2:
                     gap = at[1] - cos * cell_x - sin * cell_y
                     to_x, to_y = gap * cos, gap * sin
                 away = math.hypot(to_x, to_y)
-                size = table["outer_mm"] + table["radius_mm"] / bend
-                column = away / math.sqrt(table["depth_mm"] * (2.0 * size - table["depth_mm"]))
-                row = (bend - table["bends"][0]) / (table["bends"][1] - table["bends"][0])
+                size = cell["outer_mm"] + table["radius_mm"] / bend
+                column = away / math.sqrt(cell["depth_mm"] * (2.0 * size - cell["depth_mm"]))
+                row = (bend - cell["bends"][0]) / (cell["bends"][1] - cell["bends"][0])
             else:
                 to_x, to_y, away = at[0], at[1], math.hypot(at[0], at[1])
-                height = table["apex_mm"] - at[2] + at[0] * cell_x + at[1] * cell_y
+                height = table["top_mm"] - at[2] + at[0] * cell_x + at[1] * cell_y
                 row, column = 0.0, away / math.hypot(1.0, away) / table["steepest"]
                 inside = inside and column <= 1.0
             if kind != 1 and column > 1.05:
                 rises.append(0.0)
                 continue
-            pressed, sideways, moment, rise, held = self._interpolated(kind, row, column, height)
+            pressed, sideways, moment, rise, held = _interpolated(
+                cell["nodes"][kind], cell["depth_mm"], row, column, height
+            )
             scale = 1.0 / max(away, 1e-12)
-            across = table["apex_mm"] * sideways - moment
+            across = table["top_mm"] * sideways - moment
             force += pressed
             x += pressed * cell_x + across * to_x * scale
             y += pressed * cell_y + across * to_y * scale
@@ -214,25 +217,6 @@ class PadForceReader:
             inside = inside and held
         least = max(force, 1e-12)
         return rises, force, x / least, y / least, inside and force > 0.0
-
-    def _interpolated(
-        self, kind: int, row: float, column: float, height: float
-    ) -> tuple[float, float, float, float, bool]:
-        """Force, sideways force, moment and rise of a cell, linear between nodes; and whether it is in its range."""
-        nodes = self.table["nodes"][kind]
-        first, reach, values = nodes["first_mm"], nodes["reach_mm"], nodes["values"]
-        corners = []
-        for i, a in _ends(row, len(first)):
-            corners += [(i, j, a * b) for j, b in _ends(column, len(first[0]))]
-        travel = sum(w * first[i][j] for i, j, w in corners) - height
-        if travel <= 0.0:
-            return 0.0, 0.0, 0.0, 0.0, True
-        out = [0.0] * 4
-        for k, c in _ends(travel / self.table["depth_mm"], len(values[0][0])):
-            for i, j, w in corners:
-                for part in range(4):
-                    out[part] += w * c * values[i][j][k][part]
-        return out[0], out[1], out[2], out[3], travel <= sum(w * reach[i][j] for i, j, w in corners)
 
     def _told(self, fits: Sequence[_Fit]) -> TouchReading:
         """The fits by their weights as one answer."""
@@ -269,6 +253,25 @@ class PadForceReader:
         if sure and best.kind == 2:
             return told._replace(turn_rad=(one + 0.5 * math.pi) % math.pi, turn_uncertainty_rad=of_one)
         return told
+
+
+def _interpolated(
+    nodes: Mapping[str, Any], depth_mm: float, row: float, column: float, height: float
+) -> tuple[float, float, float, float, bool]:
+    """Force, sideways force, moment and rise of a cell, linear between nodes; and whether it is in its range."""
+    first, reach, values = nodes["first_mm"], nodes["reach_mm"], nodes["values"]
+    corners = []
+    for i, a in _ends(row, len(first)):
+        corners += [(i, j, a * b) for j, b in _ends(column, len(first[0]))]
+    travel = sum(w * first[i][j] for i, j, w in corners) - height
+    if travel <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, True
+    out = [0.0] * 4
+    for k, c in _ends(travel / depth_mm, len(values[0][0])):
+        for i, j, w in corners:
+            for part in range(4):
+                out[part] += w * c * values[i][j][k][part]
+    return out[0], out[1], out[2], out[3], travel <= sum(w * reach[i][j] for i, j, w in corners)
 
 
 def _ends(share: float, count: int) -> tuple[tuple[int, float], ...]:

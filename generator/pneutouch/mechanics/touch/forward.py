@@ -5,12 +5,13 @@ and rise. With three cells 9 mm apart (R0 2.78 mm, wall 1 mm) force and rises ar
 0.1 mm, of CalculiX in three dimensions (docs/howto/pads.md).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.mechanics.touch.cell import RADII, TILTS, CellAnswer, CellTable
 
 ObjectKind = Literal["ball", "plate", "cylinder"]
@@ -30,12 +31,18 @@ class PadAnswer(NamedTuple):
 
 @dataclass(frozen=True)
 class PadModel:
-    """Forward model of a pad at one driving pressure: places (n, 2) of its cells, mm; the table of one cell; and for
-    each cell (n,) its pressure rise over that of the table's cell, by its gas."""
+    """Forward model of a pad: places (n, 2) of its cells, mm; the tables of its kinds of cells; and for each cell (n,)
+    its kind, and its pressure rise over that of its table's cell, by its gas."""
 
     places: Array
-    table: CellTable
+    tables: tuple[CellTable, ...]
+    kind: Indices
     gain: Array
+
+    @staticmethod
+    def alike(places: Array, table: CellTable, gain: Array) -> "PadModel":
+        """A pad whose cells have one table."""
+        return PadModel(places, (table,), np.zeros(len(places), dtype=np.intp), gain)
 
     def under_balls(self, place: Array, radius: Array, depth: Array) -> PadAnswer:
         """Under balls of radii (m,) with axes at places (m, 2) and lowest points ``depth`` (m,) below the domes' tops.
@@ -54,23 +61,50 @@ class PadModel:
         the domes' tops at x = y = 0."""
         steep = np.hypot(lean[:, 0], lean[:, 1])
         sine = steep / np.hypot(1.0, steep)
-        height = self.table.apex - depth[:, None] + lean @ self.places.T
-        answer = self.table.under_plate(np.broadcast_to(sine[:, None], height.shape), height)
+        height = self.top - depth[:, None] + lean @ self.places.T
+        answer = self._each(CellTable.under_plate, np.broadcast_to(sine[:, None], height.shape), height)
         towards = np.broadcast_to((lean / np.maximum(steep, 1e-12)[:, None])[:, None], (*height.shape, 2))
         inside = answer.inside & (sine <= TILTS[-1])[:, None]
         return self._sum(answer._replace(inside=inside), towards)
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Least and greatest radius of a ball or cylinder, mm, that the table covers."""
-        return RADII[0] * self.table.radius, RADII[-1] * self.table.radius
+        """Least and greatest radius of a ball or cylinder, mm, that every table covers."""
+        radii = [table.radius for table in self.tables]
+        return RADII[0] * max(radii), RADII[-1] * min(radii)
+
+    @property
+    def table(self) -> CellTable:
+        """Table of the cell whose inner radius is the unit of curvatures."""
+        return self.tables[0]
+
+    @property
+    def top(self) -> float:
+        """Height of the highest dome over the base plane, from which depths count."""
+        return max(table.apex for table in self.tables)
+
+    @property
+    def depth(self) -> float:
+        """Greatest travel of an object on one cell."""
+        return max(table.depth for table in self.tables)
 
     def _under_round(self, kind: str, away: Array, radius: Array, depth: Array) -> PadAnswer:
         """Under bodies with axes ``away`` (m, n, 2) from those of the cells, at the nearest point."""
         distance = np.hypot(away[..., 0], away[..., 1])
-        size, height = np.clip(radius, *self.radii)[:, None], self.table.apex - depth[:, None]
-        answer = self.table.under_round(kind, *np.broadcast_arrays(size, distance, height))
+        size, height = np.clip(radius, *self.radii)[:, None], self.top - depth[:, None]
+        at = np.broadcast_arrays(size, distance, height)
+        answer = self._each(lambda table, *own: table.under_round(kind, *own), *at)
         return self._sum(answer, away / np.maximum(distance, 1e-12)[..., None])
+
+    def _each(self, ask: Callable[..., CellAnswer], *at: Array) -> CellAnswer:
+        """Answers (m, n) of every cell by its own table, to arrays (m, n)."""
+        if len(self.tables) == 1:
+            return ask(self.table, *at)
+        own = [self.kind == number for number in range(len(self.tables))]
+        pairs = zip(self.tables, own, strict=True)
+        answers = [ask(table, *(one[:, cells] for one in at)) for table, cells in pairs]
+        back = np.argsort(np.argsort(self.kind, kind="stable"))
+        return CellAnswer(*(np.concatenate(parts, axis=1)[:, back] for parts in zip(*answers, strict=True)))
 
     def _sum(self, answer: CellAnswer, towards: Array) -> PadAnswer:
         force = answer.force.sum(axis=1)
@@ -78,7 +112,7 @@ class PadModel:
         # Of a force at the base plane, and moments about the axes across: where its line crosses the tops' plane.
         turned = answer.moment[..., None] * towards
         moment = (answer.force[..., None] * self.places - turned).sum(axis=1)
-        high = self.table.apex * side.sum(axis=1)
+        high = self.top * side.sum(axis=1)
         centre = (moment + high) / np.maximum(force, 1e-12)[:, None]
         inside = answer.inside.all(axis=1) & (force > 0.0)
         return PadAnswer(answer.rise * self.gain, answer.force, force, centre, inside)

@@ -26,9 +26,9 @@ def random_objects(model: PadModel, kind: ObjectKind, count: int, random: np.ran
     cylinders of any curvature of the table with their axis anywhere over the pad, plates of any slope of the table."""
     kept, size = [], 0
     low, high = model.radii
-    reach = model.table.outer + np.abs(model.places).max(axis=0)
+    reach = max(table.outer for table in model.tables) + np.abs(model.places).max(axis=0)
     while size < count:
-        depth = random.uniform(0.0, 1.6 * model.table.depth, count)
+        depth = random.uniform(0.0, 1.6 * model.depth, count)
         if kind != "plate":
             bend = model.table.radius * random.uniform(1.0 / high, 1.0 / low, count)
             half, middle = reach, 0.0 * reach

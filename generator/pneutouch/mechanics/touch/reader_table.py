@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.mechanics.touch.cell import RADII, TABLE_ERROR, TILTS
+from pneutouch.mechanics.touch.cell import RADII, TABLE_ERROR, TILTS, CellTable
 from pneutouch.mechanics.touch.forward import ObjectKind, PadModel
 from pneutouch.mechanics.touch.objects import KINDS, answer_of, random_objects
 from pneutouch.units import KPA
@@ -28,33 +28,42 @@ _TOUCHED = 4.0
 def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_ERROR / 3.0) -> Mapping[str, Any]:
     """The table as data; ``noise_kPa`` is the standard deviation of a gauge, ``model_error`` that of the prediction
     over the greatest rise of a reading. Numbers are rounded to those of float32."""
-    table = model.table
-    bends = np.linspace(1.0 / RADII[-1], 1.0 / RADII[0], _BENDS)
-    shares, leans = np.linspace(0.0, 1.0, _SHARES), np.linspace(0.0, TILTS[-1], _LEANS)
-    axes = (bends, shares), (np.ones(1), leans), (bends, shares)
-    nodes = [table.straight(f"{kind}s", *axis) for kind, axis in zip(KINDS, axes, strict=True)]
+    radius = model.table.radius
     random = np.random.default_rng(_SEED)
     drawn = [random_objects(model, kind, _OF_EACH * size, random) for kind, size in zip(KINDS, STARTS, strict=True)]
     return {
         "places_mm": _single(model.places),
         "gains": _single(model.gain),
+        "kinds": model.kind.tolist(),
         "noise_kPa": _single(noise_kPa),
         "touched_kPa": _single(_TOUCHED * noise_kPa),
         "model_error": _single(np.hypot(model_error, STRAIGHT)),
-        "radius_mm": _single(table.radius),
-        "outer_mm": _single(table.outer),
-        "depth_mm": _single(table.depth),
-        "apex_mm": _single(table.apex),
-        "bends": _single(bends[[0, -1]]),
+        "radius_mm": _single(radius),
+        "top_mm": _single(model.top),
+        "bends": _single([radius / size for size in reversed(model.radii)]),
         "steepest": _single(TILTS[-1]),
         "spreads": [_single(objects.std(axis=0)) for objects in drawn],
-        "nodes": [
-            {"first_mm": _single(first), "reach_mm": _single(reach), "values": _single(values / [1.0, 1.0, 1.0, KPA])}
-            for first, reach, values in nodes
-        ],
+        "tables": [_of_kind(table, radius) for table in model.tables],
         "starts": [
             _starts(model, kind, objects, size, noise_kPa)
             for kind, objects, size in zip(KINDS, drawn, STARTS, strict=True)
+        ],
+    }
+
+
+def _of_kind(table: CellTable, unit: float) -> Mapping[str, Any]:
+    """A kind of cells; ``unit`` is the inner radius over which curvatures count."""
+    bends = np.linspace(1.0 / RADII[-1], 1.0 / RADII[0], _BENDS)
+    shares, leans = np.linspace(0.0, 1.0, _SHARES), np.linspace(0.0, TILTS[-1], _LEANS)
+    axes = (bends, shares), (np.ones(1), leans), (bends, shares)
+    nodes = [table.straight(f"{kind}s", *axis) for kind, axis in zip(KINDS, axes, strict=True)]
+    return {
+        "outer_mm": _single(table.outer),
+        "depth_mm": _single(table.depth),
+        "bends": _single(bends[[0, -1]] * unit / table.radius),
+        "nodes": [
+            {"first_mm": _single(first), "reach_mm": _single(reach), "values": _single(values / [1.0, 1.0, 1.0, KPA])}
+            for first, reach, values in nodes
         ],
     }
 

@@ -7,7 +7,7 @@ nowhere nearer than the cells, and no two channels cross, whatever the pattern.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 from pneutouch.catalogue import ResolvedDesign
@@ -31,7 +31,8 @@ _FOOT = 0.5
 
 @dataclass(frozen=True, slots=True)
 class PadLayout:
-    """Sizes of a pad, mm; heights as in `Layout` of the ``cell``. ``ports`` are the places enlarged by ``fan``.
+    """Sizes of a pad, mm; heights as in `Layout`. ``cell`` is one in no group, ``domes`` are by place. ``ports`` are
+    the places enlarged by ``fan``.
 
     ``meeting`` is the height at which the channels, of radius ``channel``, meet the passages of the ports, ``low`` the
     manifold's underside. ``plate`` and ``bolts`` are the radii of a round plate and of its circle of screw holes, both
@@ -39,6 +40,7 @@ class PadLayout:
     """
 
     cell: Layout
+    domes: tuple[Layout, ...]
     places: tuple[Point, ...]
     fan: float
     channel: float
@@ -64,8 +66,8 @@ class PadLayout:
 
     @property
     def middle(self) -> float:
-        """Height at which a channel passes under, or over, the axis of its cell: half way up the spigot."""
-        return 0.5 * (self.cell.floor + self.cell.plate_high)
+        """Height at which a channel passes under, or over, the axis of its cell: half way up the lowest spigot."""
+        return 0.5 * (min(dome.floor for dome in self.domes) + self.cell.plate_high)
 
     def lean(self, cell: int) -> Point:
         """Shift (x, y) of the channel of a cell, by the way down."""
@@ -74,13 +76,18 @@ class PadLayout:
 
     @property
     def membrane_outline(self) -> tuple[Segment, ...]:
-        """Outline of the membrane: as far around its cells as the flange of one."""
-        return rounded_hull(self.places, self.cell.flange_radius)
+        """Outline of the membrane: as far around its cells as the widest flange of one."""
+        return rounded_hull(self.places, self.flange_radius)
 
     @property
     def outline(self) -> tuple[Segment, ...]:
         """Outline of the manifold: that of the membrane, wider where ports need it."""
-        return rounded_hull(self.places, max(self.cell.flange_radius, self.port_side))
+        return rounded_hull(self.places, max(self.flange_radius, self.port_side))
+
+    @property
+    def flange_radius(self) -> float:
+        """Greatest radius of a flange about the axis of its cell."""
+        return max(dome.flange_radius for dome in self.domes)
 
     @property
     def port_side(self) -> float:
@@ -93,21 +100,26 @@ class PadLayout:
         return max(math.dist(at, self.centre) for at in self.places)
 
 
-def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str) -> PadLayout:
-    """The layout of a pad of cells as in ``scene``. Raises InputError for parts that a pad cannot have or have space
-    for, naming what would fit."""
-    _check_parts(scene, where)
-    cell, places = lay_out(scene), table.places
+def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str, groups: Sequence[ResolvedDesign] = ()) -> PadLayout:
+    """The layout of a pad of cells as in ``scene``, or in that of their group. Raises InputError for parts that a pad
+    cannot have or have space for, naming what would fit."""
+    for each in (scene, *groups):
+        _check_parts(each, where)
+    cell, *others = _on_one_flange([lay_out(each) for each in (scene, *groups)])
+    domes, places = tuple((cell, *others)[group] for group in table.group_of), table.places
     pitch = min(math.dist(one, other) for one, other in combinations(places, 2))
-    if pitch < (least := 2.0 * max(cell.outer_radius, cell.inner_radius) + _BETWEEN_DOMES) - 1e-9:
-        raise _closer(table, where, pitch, f"the domes need {least:.4g} mm from axis to axis", least)
+    for (one, dome), (other, beside) in combinations(zip(places, domes, strict=True), 2):
+        least = sum(max(cell.outer_radius, cell.inner_radius) for cell in (dome, beside)) + _BETWEEN_DOMES
+        if (apart := math.dist(one, other)) < least - 1e-9:
+            raise _closer(table, where, apart, f"the domes need {least:.4g} mm from axis to axis", least)
     tube = 0.5 * scene.tube.outer_diameter
     fan = max(1.0, (2.0 * max(cell.port.reach, tube) + _BETWEEN_PORTS) / pitch)
     farthest = max(math.dist(at, middle_of(places)) for at in places)
-    wall, spigot = scene.connector_printer.smallest.wall("rigid").recommended, cell.floor - cell.plate_high
-    found = _channel(scene, cell, leans=fan > 1.0)
+    wall, floors = scene.connector_printer.smallest.wall("rigid").recommended, [dome.floor for dome in domes]
+    spigot, narrow = min(floors) - cell.plate_high, min(dome.groove_inner for dome in domes)
+    found = _channel(scene, cell, narrow, spigot + 2.0 * (max(floors) - min(floors)), leans=fan > 1.0)
     if found is None:
-        problem = f"a leaning channel leaves no wall of {wall:g} mm in a spigot {2 * cell.groove_inner:.3g} mm wide"
+        problem = f"a leaning channel leaves no wall of {wall:g} mm in a spigot {2 * narrow:.3g} mm wide"
         raise _closer(table, where, pitch, problem, fan * pitch)
     channel, slope = found
     inside = max(-cell.port.hollow[-1][1], 0.0)
@@ -120,17 +132,25 @@ def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str) -> PadLayout
         problem = f"the channels to ports {fan * pitch:.3g} mm apart need a manifold of {needs:.4g} mm"
         raise InputError(problem, file=where, key="pad.thickness_mm", value=given, remedy=remedy)
     low = cell.plate_high - (needs if given is None else given)
-    made = PadLayout(cell, places, fan, channel, low, low + foot)
+    made = PadLayout(cell, domes, places, fan, channel, low, low + foot)
     return _with_plate(scene, made)
 
 
-def _channel(scene: ResolvedDesign, cell: Layout, *, leans: bool) -> tuple[float, float] | None:
-    """Radius of the channels and greatest slope with which they stay within the spigots, about whose middle they lean;
-    None if there is no space."""
+def _on_one_flange(cells: Sequence[Layout]) -> list[Layout]:
+    """Layouts of cells with the flange of the thickest, as one membrane has."""
+    thick = max(cell.flange_thickness for cell in cells)
+    return [replace(cell, flange_thickness=thick, plate_high=-thick - cell.gasket) for cell in cells]
+
+
+def _channel(
+    scene: ResolvedDesign, cell: Layout, narrow: float, high: float, *, leans: bool
+) -> tuple[float, float] | None:
+    """Radius of the channels and greatest slope with which they stay within spigots of radius ``narrow``, about the
+    middle of whose height they lean; None if there is no space."""
     wall = scene.connector_printer.smallest.wall("rigid").recommended
-    wide, spigot = min(0.5 * scene.seat.channel_diameter_mm, 0.85 * cell.port.passage), cell.floor - cell.plate_high
+    wide = min(0.5 * scene.seat.channel_diameter_mm, 0.85 * cell.port.passage)
     for slope in _SLOPES if leans else (0.0,):
-        radius = min(wide, (cell.groove_inner - wall - 0.5 * slope * spigot) / math.hypot(1.0, slope))
+        radius = min(wide, (narrow - wall - 0.5 * slope * high) / math.hypot(1.0, slope))
         if radius >= min(wide, _NARROWEST):
             return radius, slope
     return None
@@ -168,8 +188,6 @@ def _closer(table: PadTable, where: str, pitch: float, problem: str, least: floa
 
 def _with_plate(scene: ResolvedDesign, pad: PadLayout) -> PadLayout:
     """The layout with a round plate for the screws of a bolt circle, whose heads pass beside the outline."""
-    from dataclasses import replace
-
     mount = scene.mount
     if not isinstance(mount, BoltCircle):
         return pad

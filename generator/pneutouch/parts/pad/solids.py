@@ -19,17 +19,15 @@ def pad_solids(scene: ResolvedDesign, pad: PadLayout) -> tuple[Solid, Solid]:
 
 
 def _membrane(scene: ResolvedDesign, pad: PadLayout) -> Solid:
-    cell = pad.cell
-    shape, low, inner = cell.shape, -cell.flange_thickness, cell.inner_radius
+    low = -pad.cell.flange_thickness
     adds, cuts = [], []
-    inside, rim = 0.5 * low, shape.outer[0].start
-    outer = Meridian((Line((0.0, inside), (rim[0], inside), ""), Line((rim[0], inside), rim, ""), *shape.outer))
-    over = outer.volume() + math.pi * rim[0] ** 2 * inside
-    under = low - _PAST
-    root = shape.inner[0].start
-    hollow = Meridian((Line((0.0, under), (inner, under), ""), Line((inner, under), root, ""), *shape.inner))
-    for x, y in pad.places:
-        frame = Frame((x, y, 0.0))
+    inside, under = 0.5 * low, low - _PAST
+    for (x, y), dome in zip(pad.places, pad.domes, strict=True):
+        shape, inner, frame = dome.shape, dome.inner_radius, Frame((x, y, 0.0))
+        rim, root = shape.outer[0].start, shape.inner[0].start
+        outer = Meridian((Line((0.0, inside), (rim[0], inside), ""), Line((rim[0], inside), rim, ""), *shape.outer))
+        over = outer.volume() + math.pi * rim[0] ** 2 * inside
+        hollow = Meridian((Line((0.0, under), (inner, under), ""), Line((inner, under), root, ""), *shape.inner))
         if over > 0.0:
             adds.append(Feature(Turned(outer, frame), over))
         cuts.append(Feature(Turned(hollow, frame), hollow.volume() - math.pi * inner**2 * _PAST))
@@ -38,12 +36,11 @@ def _membrane(scene: ResolvedDesign, pad: PadLayout) -> Solid:
 
 
 def _manifold(scene: ResolvedDesign, pad: PadLayout) -> Solid:
-    cell = pad.cell
-    high, radius = cell.plate_high, cell.groove_inner
-    spigot = cylinder(radius, high - 0.5 * (high - pad.low), cell.floor)
-    adds = [
-        Feature(Turned(spigot, Frame((x, y, 0.0))), math.pi * radius**2 * (cell.floor - high)) for x, y in pad.places
-    ]
+    high, adds = pad.cell.plate_high, []
+    for (x, y), dome in zip(pad.places, pad.domes, strict=True):
+        radius = dome.groove_inner
+        spigot = cylinder(radius, high - 0.5 * (high - pad.low), dome.floor)
+        adds.append(Feature(Turned(spigot, Frame((x, y, 0.0))), math.pi * radius**2 * (dome.floor - high)))
     adds += [boss for at in pad.ports for boss in _port(pad, at)]
     cuts = [cut for number in range(len(pad.places)) for cut in _channel(pad, number)]
     base, mount = Prism(pad.outline, pad.low, high), scene.mount
@@ -86,7 +83,7 @@ def _channel(pad: PadLayout, number: int) -> list[Feature]:
 
 def channel_length(pad: PadLayout, number: int) -> float:
     """Length in mm of the channel of a cell, from the cavity to the passage of its port."""
-    return (pad.cell.floor - pad.meeting) * math.hypot(1.0, *pad.lean(number))
+    return (pad.domes[number].floor - pad.meeting) * math.hypot(1.0, *pad.lean(number))
 
 
 def line_volume(pad: PadLayout, number: int) -> float:

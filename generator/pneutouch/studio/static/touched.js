@@ -63,7 +63,7 @@ export class PadPicture {
     const cells = this.pad.places_mm.flatMap((place, k) => {
       const [share, [x, y]] = [rises[k] / this.top, this.at(place)];
       const number = { x, y: y + 4, "text-anchor": "middle", class: `level ${share > 0.5 ? "dark" : "light"}` };
-      return [circle([x, y], this.pad.dome_radius_mm * this.scale, "edge", { fill: shade(share) }), written(k + 1, number)];
+      return [circle([x, y], this.pad.dome_radii_mm[k] * this.scale, "edge", { fill: shade(share) }), written(k + 1, number)];
     });
     const membrane = svg("polygon", { points: listed(this.pad.outline_mm.map((each) => this.at(each))), class: "membrane" });
     const length = [50, 20, 10, 5, 2].find((each) => each * this.scale < 0.3 * this.size);

@@ -57,7 +57,7 @@ def plan_pad(pad: ResolvedPad) -> PadPlan:
     aside = _ASIDE * model.table.radius * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
     between = np.array([0.5 * (places[j] + places[k]) for j, k in pairs]).reshape(-1, 1, 2)
     spots = np.concatenate([places[:, None] + aside, np.repeat(between, len(_DEPTHS), axis=1)])
-    steps = np.linspace(0.02, 1.6, 159) * model.table.depth
+    steps = np.linspace(0.02, 1.6, 159) * model.depth
     presses = []
     for spot, share in zip(spots.reshape(-1, 2), np.tile(_DEPTHS, len(spots)), strict=True):
         answer = model.under_balls(np.broadcast_to(spot, (len(steps), 2)), np.full(len(steps), radius), steps)
@@ -123,7 +123,7 @@ def channels(count: int) -> list[str]:
 
 def noise_kPa(pad: ResolvedPad) -> float:
     """Standard deviation of a reading of the cell's gauge, kPa; where it is unknown, of the paper's."""
-    scatter = reading_of(pad.worst.scene).scatter
+    scatter = reading_of(pad.scene).scatter
     return (PAPER_NOISE if scatter is None else scatter) / KPA
 
 

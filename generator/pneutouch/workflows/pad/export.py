@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch import __version__
+from pneutouch.arrays import Array
+from pneutouch.errors import InputError
 from pneutouch.export.reader.pad_render import PadReaderSource, pad_reader_files
 from pneutouch.export.simulator.model import SimulatedDome, press_table, simulated_sensor
-from pneutouch.mechanics.touch.cell import TABLE_ERROR
+from pneutouch.mechanics.touch.cell import TABLE_ERROR, CellAnswer, CellTable
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.output.files import digest, json_bytes, with_manifest, write_folder
@@ -45,16 +47,27 @@ def write_pad_simulator(pad: ResolvedPad, calibration: str | None, kind: str, ou
     """Write ``out/<pad>-<kind>/``: the pad for a simulator as of `simulator_files`, by a calibration or as predicted as
     its reader, each dome as under a level plate. Raises InputError as `calibrated_model` and `simulator_files`."""
     made_by = simulator_files(kind)
+    if any(dome.shape != pad.layout.cell.shape for dome in pad.layout.domes):
+        remedy = "give the groups driving pressures alone"
+        raise InputError(
+            "its domes differ, and those of a model are equal", file=pad.where, key="pad.groups", remedy=remedy
+        )
     model, _ = _model(pad, calibration)
-    travel = np.linspace(0.0, float(model.table.plates.reach[0, 0]), STEPS + 1)
-    first, level = float(model.table.plates.first[0, 0]), np.zeros(len(travel))
-    answer = model.table.under_plate(level, first - travel)
-    domes = []
-    for number, (place, gain) in enumerate(zip(model.places, model.gain, strict=True), start=1):
-        press = first, travel, answer.force, float(gain) * answer.rise / KPA
-        table = press_table(round(model.table.driving_pressure / KPA, 6), *press)
-        domes.append(SimulatedDome(f"{pad.name}-{number}", 1e-3 * np.array([*place, 0.0]), (table,)))
+    presses, domes = [_level_press(table) for table in model.tables], []
+    for number, (place, of_cell, gain) in enumerate(
+        zip(pad.layout.places, model.kind, model.gain, strict=True), start=1
+    ):
+        table, (travel, answer) = model.tables[of_cell], presses[of_cell]
+        press = float(table.plates.first[0, 0]), travel, answer.force, float(gain) * answer.rise / KPA
+        states = (press_table(round(table.driving_pressure / KPA, 6), *press),)
+        domes.append(SimulatedDome(f"{pad.name}-{number}", 1e-3 * np.array([*place, 0.0]), states))
     density = pad.scene.membrane_material.density_g_per_cm3.nominal
-    sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.worst.sensor.dome.shape, density, tuple(domes))
+    sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.layout.cell.shape, density, tuple(domes))
     name, follows_from = f"{pad.name}-{kind}", {**inputs(pad), "calibration": calibration}
     return write_folder(out / name, with_manifest(made_by(sensor), name, follows_from))
+
+
+def _level_press(table: CellTable) -> tuple[Array, CellAnswer]:
+    """Travels (m,) of a level plate on a cell, mm, from first contact to the end of the range, and its answers."""
+    travel = np.linspace(0.0, float(table.plates.reach[0, 0]), STEPS + 1)
+    return travel, table.under_plate(np.zeros(len(travel)), float(table.plates.first[0, 0]) - travel)

@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.subject import accepted, glued_seat
 from pneutouch.parts.pad.solids import channel_length
 from pneutouch.printability import Finding, SensorContext, check
@@ -22,8 +24,22 @@ _ANGLES, _ROWS = np.zeros(1), 4
 
 def pad_findings(pad: ResolvedPad) -> list[Finding]:
     """All findings, errors first. Raises InputError if the cell cannot work."""
-    cell = pad.worst
-    context = SensorContext(
+    own, *others = [_context(pad, cell) for cell in pad.worst]
+    reasons = pad.scene.design.accepted.reasons
+    found = [*_channels_once(pad, check(subject_of(pad), own)), *_neighbours(pad)]
+    for group, context in zip(pad.file.pad.groups, others, strict=True):
+        known, cells = {(one.rule, one.message) for one in found}, ", ".join(map(str, group.cells))
+        more = check(PrintSubject((), (), pad.name), context)
+        found += [
+            replace(one, message=f"of cells {cells}: {one.message}")
+            for one in more
+            if (one.rule, one.message) not in known
+        ]
+    return sorted((accepted(one, reasons) for one in found), key=lambda one: one.rank)
+
+
+def _context(pad: ResolvedPad, cell: Evaluation) -> SensorContext:
+    return SensorContext(
         cell.prediction,
         cell.sensor,
         cell.rating,
@@ -32,9 +48,6 @@ def pad_findings(pad: ResolvedPad) -> list[Finding]:
         glued=glued_seat(pad.scene),
         scene=cell.scene,
     )
-    reasons = pad.scene.design.accepted.reasons
-    found = [*_channels_once(pad, check(subject_of(pad), context)), *_neighbours(pad)]
-    return sorted((accepted(one, reasons) for one in found), key=lambda one: one.rank)
 
 
 def subject_of(pad: ResolvedPad) -> PrintSubject:
@@ -71,10 +84,14 @@ def _channels_once(pad: ResolvedPad, found: list[Finding]) -> Iterator[Finding]:
         yield Finding("cleaning", "warning", "manifold", message, fix, source, None, None)
 
 
-def widest(pad: ResolvedPad) -> float:
-    """Greatest radius in mm of a pressed dome, at the end of its range, over the driving pressures of its design."""
-    radii = [pad.layout.cell.outer_radius]
-    for state in pad.worst.prediction.states:
+def widest(pad: ResolvedPad) -> tuple[float, ...]:
+    """By group: greatest radius in mm of a pressed dome, at the end of its range, over its driving pressures."""
+    return tuple(_widest(cell) for cell in pad.worst)
+
+
+def _widest(cell: Evaluation) -> float:
+    radii = [cell.assembly.layout.outer_radius]
+    for state in cell.prediction.states:
         if state.face is not None:
             face = state.face()
             rows = np.arange(0.0, face.edges + 0.5 / _ROWS, 1.0 / _ROWS)
@@ -84,21 +101,22 @@ def widest(pad: ResolvedPad) -> float:
 
 def _neighbours(pad: ResolvedPad) -> Iterator[Finding]:
     """An error if neighbours that are pressed together meet: the prediction of a cell knows no neighbour."""
-    radius, places = widest(pad), pad.layout.places
-    (one, other), pitch = min(
-        (((a, b), math.dist(places[a], places[b])) for a, b in combinations(range(len(places)), 2)),
-        key=lambda pair: pair[1],
-    )
-    if pitch >= 2.0 * radius:
+    places, by_group = pad.layout.places, widest(pad)
+    radii = [by_group[group] for group in pad.file.pad.group_of]
+    pairs = [
+        (math.dist(places[a], places[b]), radii[a] + radii[b], a, b) for a, b in combinations(range(len(places)), 2)
+    ]
+    pitch, needs, one, other = min(pairs, key=lambda pair: pair[0] - pair[1])
+    if pitch >= needs:
         return
-    least = math.ceil(20.0 * radius) / 10.0
+    least = math.ceil(10.0 * needs) / 10.0
     message = (
-        f"pressed to the end of their range, cells {one + 1} and {other + 1} bulge to {2 * radius:.2f} mm and meet: "
+        f"pressed to the end of their range, cells {one + 1} and {other + 1} bulge to {needs:.2f} mm and meet: "
         f"they stand {pitch:.2f} mm apart"
     )
     fix = f"raise pad.pitch_mm to {least:g}, or lower indentation.depth_mm or the driving pressures of the cell"
     middle = 0.5 * (np.array(places[one]) + np.array(places[other]))
     where = (float(middle[0]), float(middle[1]), 0.0)
-    excess = Excess(pitch, 2.0 * radius, "mm")
+    excess = Excess(pitch, needs, "mm")
     source = "own: the solid's wall under a flat plate"
     yield Finding("neighbours", "error", "membrane", message, fix, source, where, excess)

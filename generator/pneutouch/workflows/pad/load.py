@@ -1,8 +1,9 @@
 """A pad with its cell resolved, its bodies, and the cell as a sensor behind its own channel."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from pathlib import Path
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
@@ -12,35 +13,36 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import DrawnScene, Evaluation, PredictionOptions, evaluate_drawn, sensor_of
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE
 from pneutouch.parts.assembly import Assembly, print_offset
-from pneutouch.parts.layout import lay_out
 from pneutouch.parts.pad import PadLayout, lay_out_pad, pad_solids
 from pneutouch.parts.pad.solids import line_volume
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
-from pneutouch.spec.pad import PadFile
+from pneutouch.spec.pad import PadFile, PadGroup
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 from pneutouch.spec.values import name_of
 from pneutouch.units import ML
 
+_OF_GROUPS = ("membrane.", "indentation.", "pneumatics.driving_pressures_kPa")
+"""Keys of a design in which a group may differ."""
 _DIGITS = 4
 """Decimals of a cell's dead volume, mL: cells of equal volume share one prediction."""
 
 
 @dataclass(frozen=True)
 class ResolvedPad:
-    """A pad: its file, its cell as a scene of its own, and its layout. ``where`` is the file as the user gave it."""
+    """A pad: its file, its cell as a scene, those of its groups, its layout. ``where`` is the file as it was given."""
 
     name: str
     where: str
     file: PadFile
     scene: ResolvedDesign
-    cell_changes: Changes
+    groups: tuple[ResolvedDesign, ...]
     library: Library
 
     @cached_property
     def layout(self) -> PadLayout:
         """The places of cells, channels and ports."""
-        return lay_out_pad(self.scene, self.file.pad, self.where)
+        return lay_out_pad(self.scene, self.file.pad, self.where, self.groups)
 
     @cached_property
     def solids(self) -> tuple[Solid, Solid]:
@@ -78,7 +80,7 @@ class ResolvedPad:
     def glue_mL(self) -> float:
         """Glue between membrane and manifold, mL, as thick as the gap of a printed fit."""
         area = self.solids[0].base.volume() / self.layout.cell.flange_thickness
-        holes = len(self.layout.places) * math.pi * self.layout.cell.inner_radius**2
+        holes = sum(math.pi * dome.inner_radius**2 for dome in self.layout.domes)
         return (area - holes) * self.scene.fit_clearance / ML
 
     def stands_up(self, name: str) -> bool:
@@ -99,23 +101,37 @@ class ResolvedPad:
         return tuple(round(line_volume(self.layout, k) / ML + behind_mL, _DIGITS) for k in range(count))
 
     @cached_property
-    def evaluations(self) -> dict[float, Evaluation]:
-        """The cell as a sensor, by each of the dead volumes (mL)."""
-        return {volume_mL: self.evaluation_of(volume_mL) for volume_mL in sorted(set(self.dead_volumes_mL))}
+    def kinds(self) -> tuple[tuple[int, float], ...]:
+        """For each cell the number of its group, and its dead volume, mL: cells with the same are alike."""
+        return tuple(zip(self.file.pad.group_of, self.dead_volumes_mL, strict=True))
+
+    @cached_property
+    def evaluations(self) -> dict[tuple[int, float], Evaluation]:
+        """The cells as sensors, by each of `kinds`."""
+        find = partial(compared, self.library, self.scene.printer)
+        return {kind: evaluate_drawn(self.drawn(*kind), find) for kind in sorted(set(self.kinds))}
 
     @property
-    def worst(self) -> Evaluation:
-        """The cell with the most gas behind it, which reads least."""
-        return self.evaluations[max(self.dead_volumes_mL)]
+    def worst(self) -> tuple[Evaluation, ...]:
+        """By group, that of none first: the cell with the most gas behind it, which reads least."""
+        return tuple(self.evaluations[kind] for kind in self.worst_kinds)
 
-    def evaluation_of(self, volume_mL: float) -> Evaluation:
-        """The cell as a sensor with a dead volume, on the manifold: a connector of its own need not have space."""
-        changes = {**self.cell_changes, "pneumatics.dead_volume_mL": volume_mL}
-        scene = load_scene(self.file.pad.cell, changes, self.library)
-        assembly = Assembly(scene, lay_out(scene))
-        options = PredictionOptions("solid", "variational", "base", DEFAULT_TOLERANCE)
-        drawn = DrawnScene(scene, assembly, sensor_of(assembly), options, ())
-        return evaluate_drawn(drawn, partial(compared, self.library, scene.printer))
+    @property
+    def worst_kinds(self) -> tuple[tuple[int, float], ...]:
+        """Those of `kinds` with the most gas, by group."""
+        return tuple(max(kind for kind in self.kinds if kind[0] == group) for group in range(1 + len(self.groups)))
+
+    def drawn(self, group: int, volume_mL: float) -> DrawnScene:
+        """A cell of a group as a sensor with a dead volume, on the manifold, for a connector of its own need not have
+        space; and on the flange of the pad, where its wall stands upright."""
+        scene = (self.scene, *self.groups)[group]
+        design = scene.design
+        pneumatics = design.pneumatics.model_copy(update={"dead_volume_mL": volume_mL})
+        scene = replace(scene, design=design.model_copy(update={"pneumatics": pneumatics}))
+        layout = self.layout.domes[self.file.pad.group_of.index(group)]
+        assembly, clamp = Assembly(scene, layout), "flange" if layout.shape.plain.upright else "base"
+        options = PredictionOptions("solid", "variational", clamp, DEFAULT_TOLERANCE)
+        return DrawnScene(scene, assembly, sensor_of(assembly, clamp), options, ())
 
 
 def load_pad(name: str, changes: Changes | None = None, library: Library | None = None) -> ResolvedPad:
@@ -136,4 +152,18 @@ def load_pad(name: str, changes: Changes | None = None, library: Library | None 
         raise InputError(
             error.problem, file=str(path), key="pad.cell", value=file.pad.cell, remedy=error.remedy
         ) from None
-    return ResolvedPad(name_of(path), str(path), file, load_scene(source, of_cell, library), of_cell, library)
+    groups = [load_scene(source, {**of_cell, **_changes_of(group, path)}, library) for group in file.pad.groups]
+    return ResolvedPad(name_of(path), str(path), file, load_scene(source, of_cell, library), tuple(groups), library)
+
+
+def _changes_of(group: PadGroup, path: Path) -> Changes:
+    """Changes of a group. Raises InputError for one of what all cells of a membrane share."""
+    try:
+        found = group.changes
+    except InputError as error:
+        raise InputError(error.problem, file=str(path), key="pad.groups", value=error.value) from None
+    for key in found:
+        if not key.startswith(_OF_GROUPS) or key == "membrane.material":
+            problem, remedy = f"{key} is that of all cells", "a group may differ in dome, test and driving pressure"
+            raise InputError(problem, file=str(path), key="pad.groups", value=found[key], remedy=remedy)
+    return found

@@ -34,6 +34,7 @@ _WIDTH, _HEIGHT = 180.0, 72.0
 ALONE = (
     "each cell is predicted alone: what a pressed neighbour does to it through the membrane between them is left out",
     "each cell is pressed by a plate of its own, as its design states it",
+    "a cell with an upright wall is held by its flange, as printed, one with another wall at its base plane",
 )
 """Assumptions of the prediction of the cells."""
 
@@ -51,7 +52,7 @@ def pad_record(pad: ResolvedPad) -> PadRecord:
         thickness_mm=_rounded(layout.cell.plate_high - layout.low),
         channel_diameter_mm=_rounded(2.0 * layout.channel),
         port_pitch_mm=_rounded(layout.fan * pitch),
-        pressed_diameter_mm=_rounded(2.0 * widest(pad)),
+        pressed_diameter_mm=_rounded(2.0 * max(widest(pad))),
         cells=tuple(_cell(pad, k) for k in range(len(layout.places))),
         assumptions=ALONE,
     )
@@ -59,7 +60,7 @@ def pad_record(pad: ResolvedPad) -> PadRecord:
 
 def _cell(pad: ResolvedPad, k: int) -> PadCell:
     layout, volume_mL = pad.layout, pad.dead_volumes_mL[k]
-    states = pad.evaluations[volume_mL].prediction.states
+    states = pad.evaluations[pad.kinds[k]].prediction.states
     (x, y), (u, v) = layout.places[k], layout.ports[k]
     return PadCell(
         number=k + 1,
@@ -91,10 +92,11 @@ def sheet(
     left_out: Mapping[str, str],
 ) -> str:
     """Print sheet as Markdown, for the operator; ``left_out``: files not written, and why."""
-    scene, rated_kPa = pad.scene, pad.worst.rating.pressure_kPa
-    straight = [one.figures for one in pad.worst.prediction.states if one.figures is not None]
-    fall = LEAK * straight[-1].sensitivity * straight[-1].force_high if straight else None
-    gas_mL = pad.layout.cell.shape.cavity_volume / ML + max(pad.dead_volumes_mL)
+    scene, rated_kPa = pad.scene, min(cell.rating.pressure_kPa for cell in pad.worst)
+    last = [[one.figures for one in cell.prediction.states if one.figures is not None][-1:] for cell in pad.worst]
+    fall = min((LEAK * one.sensitivity * one.force_high for figures in last for one in figures), default=None)
+    filled_kPa = max(fill_kPa(one, rated_kPa) for one in (scene, *pad.groups))
+    gas_mL = max(dome.shape.cavity_volume for dome in pad.layout.domes) / ML + max(pad.dead_volumes_mL)
     return filled(
         "pad.md.j2",
         pad=pad,
@@ -108,10 +110,10 @@ def sheet(
         input_hash=input_hash,
         left_out=left_out,
         glue=GLUES[name].title if (name := glue_of(scene)) else None,
-        fill_kPa=fill_kPa(scene, rated_kPa),
+        fill_kPa=filled_kPa,
         rated_kPa=rated_kPa,
         fall=fall,
-        leak_tools=leak_tools(gas_mL, fill_kPa(scene, rated_kPa), fall),
+        leak_tools=leak_tools(gas_mL, filled_kPa, fall),
     )
 
 
@@ -131,7 +133,7 @@ def drawing_svg(pad: ResolvedPad) -> bytes:
         heights = (bounds.min() - 1.0, bounds.max() + 1.0)
         middle = layout.centre[0]
         cut.set(xlim=(middle - reach, middle + reach), ylim=heights, aspect="equal", xlabel="x, mm", ylabel="z, mm")
-        cut.set_title(f"section at y = {layout.centre[1]:.3g} mm")
+        cut.set_title(f"section at y = {round(layout.centre[1], 3) + 0.0:g} mm")
         cut.grid(visible=False)
         document = pad.file.document
         text = f"{document.title}, revision {document.revision}: {len(layout.places)} cells, {pad.file.pad.layout}"
@@ -149,9 +151,8 @@ def _view(ax: Axes, pad: ResolvedPad, reach: float, *, behind: bool) -> None:
         circle(ax, side * layout.centre[0], layout.centre[1], layout.plate)
         for bore in pad.solids[1].bores:
             circle(ax, side * bore.x, bore.y, bore.radius)
-    radius = layout.cell.port.root if behind else layout.cell.outer_radius
     for number, (x, y) in enumerate(layout.ports if behind else layout.places, start=1):
-        circle(ax, side * x, y, radius)
+        circle(ax, side * x, y, layout.cell.port.root if behind else layout.domes[number - 1].outer_radius)
         if behind:
             circle(ax, side * x, y, layout.cell.port.hollow[0][0], lw=0.5)
         ax.text(side * x, y, str(number), ha="center", va="center", fontsize=7, **BOLD)

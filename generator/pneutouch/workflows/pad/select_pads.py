@@ -32,7 +32,7 @@ _PITCHES, _CONTACTS, _LOUD = (6.0, 40.0), 48, 20.0
 
 class PadTarget(NamedTuple):
     """Wanted of a pad: extent of the area, mm; median errors of force, relative, and of place, mm, under balls of a
-    radius, mm; most gauges."""
+    radius, mm; most gauges; greatest height of the unloaded domes over their flange, mm."""
 
     area: tuple[float, float]
     force_error: float
@@ -40,6 +40,7 @@ class PadTarget(NamedTuple):
     ball: float
     gauges: int
     gauge: str | None = None
+    height: float = math.inf
 
 
 class PadTrial(NamedTuple):
@@ -54,8 +55,9 @@ class PadTrial(NamedTuple):
     read: float
 
     def meets(self, target: PadTarget) -> bool:
-        """True if both errors are at most what is wanted."""
-        return self.force_error <= target.force_error and self.place_error <= target.place_error
+        """True if both errors and the height are at most what is wanted."""
+        low = sum(self.sizes) <= target.height
+        return low and self.force_error <= target.force_error and self.place_error <= target.place_error
 
     @property
     def sizes(self) -> tuple[float, float]:
@@ -100,7 +102,7 @@ def _trial(target: PadTarget, layout: str, pitch: float, noise: float) -> PadTri
     places = np.array(PadTable(cell="cell", layout=layout, pitch_mm=pitch).places)
     table = similar_cell().scaled(pitch / PITCH)
     own = BEHIND * (pitch / PITCH) ** 3
-    model = PadModel(places, table, np.full(len(places), (own + table.cavity) / (BEHIND + table.cavity)))
+    model = PadModel.alike(places, table, np.full(len(places), (own + table.cavity) / (BEHIND + table.cavity)))
     balls = random_objects(model, "ball", 12 * _CONTACTS, np.random.default_rng(2))
     balls[:, 2] = table.radius / target.ball
     half = 0.5 * np.array(target.area)

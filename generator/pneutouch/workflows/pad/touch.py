@@ -9,6 +9,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import DrawnScene
 from pneutouch.mechanics.models.local import cache_folder, fingerprint, store_arrays
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.touch.cell import CellTable, cell_table
@@ -22,26 +23,34 @@ Tabulate = Callable[[Sensor, float], CellTable]
 
 
 def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate | None = None) -> PadModel:
-    """Tabulate the cell of a pad on its flange at a driving pressure, in two minutes of processor time at
-    the first time, more for thin walls; the table is then kept among those of `pneutouch table`. ``made_by`` stands in
-    for `cell_table`.
+    """Tabulate the cell of a pad, and that of each group, on the flange, at a driving pressure or that of the group.
+    Each takes two minutes of processor time at the first time, more for thin walls; tables are then kept among those
+    of `pneutouch table`. ``made_by`` stands in for `cell_table`.
 
     Cells with another gas volume behind them read by the ratio of the whole gas volumes. Raises InputError for a dome
     that is not round at its top, an object of the cell's own, a vacuum, and a pressure beyond the limit point."""
-    cell = pad.worst
-    shape = cell.sensor.dome.shape
-    why = cell.sensor.protocol.other_contact if shape.domed else f"its dome is not round at its top: {shape.key}"
-    if why is not None:
-        remedy = "contact with several cells is computed for round domes under frictionless objects"
-        raise InputError(f"of the cell {pad.file.pad.cell}: {why}", file=pad.where, key="pad.cell", remedy=remedy)
     if driving_pressure_kPa < 0.0:
         remedy = "give 0 or more"
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
-    flange = pad.layout.cell.flange_width, pad.layout.cell.flange_thickness
-    table = _kept(cell.sensor.replace(flange=flange), driving_pressure_kPa * KPA, made_by)
-    behind = ML * np.array(pad.dead_volumes_mL)
-    gain = (cell.sensor.gas.dead_volume + table.cavity) / (behind + table.cavity)
-    return PadModel(np.array(pad.layout.places), table, gain)
+    cells = [pad.drawn(*kind) for kind in pad.worst_kinds]
+    own_kPa = [driving_pressure_kPa, *(group.driving_pressure_kPa for group in pad.file.pad.groups)]
+    pressures = [KPA * (driving_pressure_kPa if one_kPa is None else one_kPa) for one_kPa in own_kPa]
+    tables = [_table(pad, cell, pressure, made_by) for cell, pressure in zip(cells, pressures, strict=True)]
+    kind, cavities = np.array(pad.file.pad.group_of), np.array([table.cavity for table in tables])
+    whole = cavities + [cell.sensor.gas.dead_volume for cell in cells]
+    gain = whole[kind] / (ML * np.array(pad.dead_volumes_mL) + cavities[kind])
+    return PadModel(np.array(pad.layout.places), tuple(tables), kind, gain)
+
+
+def _table(pad: ResolvedPad, cell: DrawnScene, pressure: float, made_by: Tabulate | None) -> CellTable:
+    """The table of a cell on its flange, at a driving pressure (MPa). Raises InputError as `pad_model`."""
+    sensor, layout = cell.sensor, cell.assembly.layout
+    shape = sensor.dome.shape
+    why = sensor.protocol.other_contact if shape.domed else f"its dome is not round at its top: {shape.key}"
+    if why is not None:
+        remedy = "contact with several cells is computed for round domes under frictionless objects"
+        raise InputError(f"of the cell {pad.file.pad.cell}: {why}", file=pad.where, key="pad.cell", remedy=remedy)
+    return _kept(sensor.replace(flange=(layout.flange_width, layout.flange_thickness)), pressure, made_by)
 
 
 def pad_pressure_kPa(pad: ResolvedPad) -> float:
@@ -59,8 +68,8 @@ def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibrat
         problem = f"of the pad {calibration.pad}, whose cells lie elsewhere"
         raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
     model = pad_model(pad, calibration.driving_pressure_kPa)
-    scaled = model.table.scaled(force=calibration.force_factor)
-    return replace(model, table=scaled, gain=model.gain * calibration.rise_factors), calibration
+    scaled = tuple(table.scaled(force=calibration.force_factor) for table in model.tables)
+    return replace(model, tables=scaled, gain=model.gain * calibration.rise_factors), calibration
 
 
 def _kept(sensor: Sensor, pressure: float, made_by: Tabulate | None = None) -> CellTable:
