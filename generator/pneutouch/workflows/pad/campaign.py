@@ -42,6 +42,11 @@ class PadPlan(NamedTuple):
     presses: Array
     answer: PadAnswer
 
+    @property
+    def highest(self) -> int:
+        """Number of a cell with the highest dome, from whose top depths count."""
+        return 1 + int(np.argmax([self.model.tables[kind].apex for kind in self.model.kind]))
+
 
 def plan_pad(pad: ResolvedPad) -> PadPlan:
     """Presses of a ball on each cell and between neighbours, at the greatest driving pressure of the cell's design.
