@@ -164,8 +164,8 @@ def test_groups_have_pressures_and_domes_of_their_own(home, tmp_path):
         ({"cells": list(range(1, 8))}, "groups", "leave out"),
         ({"cells": [2], "assignments": ["membrane.material=FLX9950"]}, "pad.groups", "of all cells"),
         ({"cells": [2], "assignments": ["connector.port=luer-female"]}, "pad.groups", "of all cells"),
-        ({"cells": [2], "assignments": ["membrane.inner_radius_mm"]}, "pad.groups", "table.key=value"),
-        ({"cells": [2], "assignments": ["membrane.inner_radius_mm=-1"]}, "membrane.inner_radius_mm", ""),
+        ({"cells": [2], "assignments": ["membrane.inner_radius_mm"]}, "pad.groups[0]", "table.key=value"),
+        ({"cells": [2], "assignments": ["membrane.inner_radius_mm=-1"]}, "pad.groups[0]", "membrane.inner_radius_mm"),
     ],
 )
 def test_a_group_that_cannot_be_is_refused(home, group, key, words):

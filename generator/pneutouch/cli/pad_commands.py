@@ -1,7 +1,9 @@
 """Pads in the commands of one sensor: plan, simulate, characterize, calibrate and export-reader."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,7 @@ from pneutouch.spec.values import plain_number
 if TYPE_CHECKING:
     from pneutouch.workflows.pad.load import ResolvedPad
     from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
+    from pneutouch.workflows.pad.touch import Tabulate
 
 _WANTED = {"force_error": 10.0, "place_error": 1.0, "gauges": 12, "ball": 8.0}
 """Errors, gauges and ball of a pad that is selected, where they are not given: our choice."""
@@ -41,8 +44,9 @@ def plan_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: P
     from pneutouch.workflows.pad.load import load_pad
 
     _refuse_others(context, name, "design", "set_", "out")
-    with bar("tabulating a cell"):
-        folder = write_pad_plan(plan_pad(load_pad(name, changes(set_))), out, changes(set_))
+    pad = load_pad(name, changes(set_))
+    with _tabulating() as made_by:
+        folder = write_pad_plan(plan_pad(pad, made_by), out, changes(set_))
     echo(str(folder))
     report_next("simulate", folder)
 
@@ -59,8 +63,9 @@ def simulate_a_pad(context: typer.Context, name: str, set_: list[str] | None, ou
     if is_planned(name):
         campaign: PadCampaign = validate(PadCampaign, read_toml(Path(name) / CAMPAIGN), f"{name}/{CAMPAIGN}")
         name, given = campaign.pad, parse_changes(campaign.assignments) | given
-    with bar("simulating presses"):
-        folder = simulate_pad(plan_pad(load_pad(name, given)), out, seed, given)
+    pad = load_pad(name, given)
+    with _tabulating("simulating presses") as made_by:
+        folder = simulate_pad(plan_pad(pad, made_by), out, seed, given)
     echo(str(folder))
     report_next("characterize", folder)
 
@@ -71,8 +76,8 @@ def characterize_a_pad(context: typer.Context, data: Path, out: Path, *, json: b
     from pneutouch.workflows.pad.measured_files import write_figures
 
     _refuse_others(context, str(data), "data", "out", "json")
-    with bar("fitting the readings"):
-        measured = read_campaign(data)
+    with _tabulating("fitting the readings") as made_by:
+        measured = read_campaign(data, made_by)
         record, folder = write_figures(measured, fitted(measured), out)
     print_answer(record, lambda one: filled_text("pad.txt.j2", record=one), folder, json=json)
     if not json:
@@ -85,8 +90,8 @@ def calibrate_a_pad(context: typer.Context, data: Path, out: Path, save: str | N
     from pneutouch.workflows.pad.measured_files import save_calibration, write_figures
 
     _refuse_others(context, str(data), "data", "out", "save", "replace")
-    with bar("fitting the readings"):
-        measured = read_campaign(data)
+    with _tabulating("fitting the readings") as made_by:
+        measured = read_campaign(data, made_by)
         fit = fitted(measured)
         record, folder = write_figures(measured, fit, out)
         path = save_calibration(calibration_of(measured, fit), save or measured.pad.name, replace=replace)
@@ -104,11 +109,11 @@ def export_a_pad(
 
     _refuse_others(context, name, "design", "set_", "calibration", "simulator", "out")
     pad = load_pad(name, changes(set_))
-    with bar("tabulating a cell"):
+    with _tabulating() as made_by:
         if simulator is None:
-            folder = write_pad_reader(pad, calibration, out)
+            folder = write_pad_reader(pad, calibration, out, made_by)
         else:
-            folder = write_pad_simulator(pad, calibration, simulator, out)
+            folder = write_pad_simulator(pad, calibration, simulator, out, made_by)
     echo(str(folder))
     files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
     notify(f"how to use it: {f'the examples at the head of {files}' if files else folder / 'README.md'}")
@@ -169,13 +174,14 @@ def compare_pads(context: typer.Context, names: list[str], set_: list[str] | Non
     for name in names:
         if not is_pad(name):
             raise InputError("is no pad", key="things", value=name, remedy="compare pads with pads")
-    with bar("tabulating cells"):
-        columns = [_compared(load_pad(name, changes(set_))) for name in names]
+    pads = [load_pad(name, changes(set_)) for name in names]
+    with _tabulating("comparing") as made_by:
+        columns = [_compared(pad, made_by) for pad in pads]
     keys = dict.fromkeys(key for column in columns for key in column)
     echo(table_text(["", *names], [[key, *(column.get(key, "") for column in columns)] for key in keys]))
 
 
-def _compared(pad: "ResolvedPad") -> dict[str, str]:
+def _compared(pad: "ResolvedPad", made_by: "Tabulate") -> dict[str, str]:
     """Values of a pad by what they are: those of its record, and what a reading of a ball leaves open."""
     import numpy as np
 
@@ -186,7 +192,7 @@ def _compared(pad: "ResolvedPad") -> dict[str, str]:
     from pneutouch.workflows.pad.pad_sheet import pad_record
     from pneutouch.workflows.pad.touch import pad_model, pad_pressure_kPa
 
-    record, model = pad_record(pad), pad_model(pad, pad_pressure_kPa(pad))
+    record, model = pad_record(pad), pad_model(pad, pad_pressure_kPa(pad), made_by)
     balls = random_objects(model, "ball", 1000, np.random.default_rng(1))
     left = resolution(model, "ball", balls, noise_kPa(pad) * KPA)
     values = {
@@ -200,10 +206,17 @@ def _compared(pad: "ResolvedPad") -> dict[str, str]:
     }
     for cell in record.cells:
         for one in cell.states:
-            if one.sensitivity_kPa_per_N is not None:
-                figures = f"{one.sensitivity_kPa_per_N:.3g}, to {one.force_range_end_N:.3g} N"
-                values.setdefault(f"a cell at {one.driving_pressure_kPa:g} kPa, kPa/N", figures)
+            values.setdefault(f"a cell at {one.driving_pressure_kPa:g} kPa, kPa/N", one.text)
     return values
+
+
+@contextmanager
+def _tabulating(what: str = "reading the table of a cell") -> "Iterator[Tabulate]":
+    """Bar of a stage; yields what tabulates a cell, by presses that it counts, where there is no table yet."""
+    from pneutouch.mechanics.touch.cell import cell_table
+
+    with bar(what) as progress:
+        yield partial(cell_table, progress=lambda done, total: progress(done, total, "tabulating a cell"))
 
 
 def _refuse_others(context: typer.Context, name: str, *ours: str) -> None:

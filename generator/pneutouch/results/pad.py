@@ -14,6 +14,12 @@ class PadState:
     force_range_end_N: float | None
     """Contact force at the end of the range; null: no straight line explains the curve."""
 
+    @property
+    def text(self) -> str:
+        """Sensitivity and the end of its range."""
+        figures = self.sensitivity_kPa_per_N, self.force_range_end_N
+        return "no line" if None in figures else "{:.3g}, to {:.3g} N".format(*figures)
+
 
 @dataclass(frozen=True, slots=True)
 class PadCell:

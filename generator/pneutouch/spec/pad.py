@@ -49,8 +49,8 @@ class PadGroup(SparseTable):
     @property
     def changes(self) -> Changes:
         """Changes of the cell's design by key. Raises InputError."""
-        held = self.driving_pressure_kPa
-        given = {} if held is None else {"pneumatics.driving_pressures_kPa": [held]}
+        own_kPa = self.driving_pressure_kPa
+        given = {} if own_kPa is None else {"pneumatics.driving_pressures_kPa": [own_kPa]}
         return {**parse_changes(self.assignments), **given}
 
 

@@ -6,6 +6,7 @@ coupled by its height, so that here forces and pressure are functions of the tra
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -172,7 +173,11 @@ def greatest_lean(depth: float, outer: float, radius: Array) -> Array:
     return np.asarray(np.sqrt(1.0 - (1.0 - depth / (outer + radius)) ** 2))
 
 
-def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
+Progress = Callable[[int, int], None]
+"""Called with the number of presses made, and of all."""
+
+
+def cell_table(sensor: Sensor, driving_pressure: float, progress: Progress = lambda done, total: None) -> CellTable:
     """The table of a cell at one driving pressure (MPa), by 44 presses of ``harmonic``, which take minutes.
 
     The depth is that of the sensor's test, or where the range of its central plate ends or, on a flange, its wall lies
@@ -187,13 +192,18 @@ def cell_table(sensor: Sensor, driving_pressure: float) -> CellTable:
     probe = solid_probe(plain, _CELLS)
     free = state_at(probe.solid, driving_pressure)
     depth = plain.protocol.depth
-    central = _pressed(plain, probe, free, depth)
-    depth = min(depth, central.end, lies)
-    scenes = [plain.replace(tilt=float(np.arcsin(lean))) for lean in TILTS]
-    plates = [_pressed(one, probe, free, depth) for one in scenes]
+    numbers, total = count(1), 1 + len(TILTS) + 2 * len(RADII) * len(SHARES)
+
+    def press(scene: Sensor, depth: float, to: float | None = None) -> _Curve:
+        curve = _pressed(scene, probe, free, depth, to)
+        progress(next(numbers), total)
+        return curve
+
+    depth = min(depth, press(plain, depth).end, lies)
+    plates = [press(plain.replace(tilt=float(np.arcsin(lean))), depth) for lean in TILTS]
     radius = plain.dome.inner_radius
     outer = outer_sphere(plain.dome.shape, float(np.sqrt(RADII[0] * RADII[-1])) * radius, depth)
-    balls, cylinders = (_beside(plain, body, probe, free, depth, outer) for body in (ball, cylinder))
+    balls, cylinders = (_beside(plain, body, press, free, depth, outer) for body in (ball, cylinder))
     lengths = radius, outer, depth, free.outer_apex
     level = _nodes(NodeAxis(np.zeros(1)), TILTS, plates, 1)
     return CellTable(*lengths, free.volume, driving_pressure, balls, level, cylinders)
@@ -214,7 +224,12 @@ def outer_sphere(shape: DomeShape, ball_radius: float, depth: float) -> float:
 
 
 def _beside(
-    plain: Sensor, body: Callable[[float], RigidObject], probe: StrainProbe, free: FreeState, depth: float, outer: float
+    plain: Sensor,
+    body: Callable[[float], RigidObject],
+    press: Callable[[Sensor, float, float], "_Curve"],
+    free: FreeState,
+    depth: float,
+    outer: float,
 ) -> _Nodes:
     """Presses of bodies of `RADII` at offsets of `SHARES`."""
     curves = []
@@ -225,7 +240,7 @@ def _beside(
         for one, nearer, down in zip(lean, [0.0, *drop[:-1]], drop, strict=True):
             scene = plain.replace(body=body(float(size)), offset=float(one * (outer + size)))
             to = min(max(depth - float(nearer), _LEAST * depth), _LOWEST * (free.outer_apex - float(down)))
-            curves.append(_pressed(scene, probe, free, depth, to))
+            curves.append(press(scene, depth, to))
     return _nodes(NodeAxis(np.log(RADII)), SHARES, curves, len(RADII))
 
 

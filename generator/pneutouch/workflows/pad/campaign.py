@@ -1,5 +1,6 @@
 """Plan of a pad's measurement, balls pressed at a raster of places, and the campaign that simulated rigs make of it."""
 
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ from pneutouch.tables.csv_table import columns_csv
 from pneutouch.units import KPA
 from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.load import ResolvedPad
-from pneutouch.workflows.pad.touch import pad_model, pad_pressure_kPa
+from pneutouch.workflows.pad.touch import Tabulate, pad_model, pad_pressure_kPa
 
 CAMPAIGN = "pad-campaign.toml"
 _BALL, _DEPTHS, _NEAR, _ASIDE, _TURN = 2.0, (0.4, 0.7, 0.95), 1.05, 0.5, 2.4
@@ -48,14 +49,15 @@ class PadPlan(NamedTuple):
         return 1 + int(np.argmax([self.model.tables[kind].apex for kind in self.model.kind]))
 
 
-def plan_pad(pad: ResolvedPad) -> PadPlan:
+def plan_pad(pad: ResolvedPad, made_by: Tabulate | None = None) -> PadPlan:
     """Presses of a ball on each cell and between neighbours, at the greatest driving pressure of the cell's design.
 
     Those on a cell are beside its axis, each in another direction: there readings tell the zero of the stage.
 
     Raises InputError as `pad_model` does."""
-    model = pad_model(pad, pad_pressure_kPa(pad))
-    radius, places = max(0.5, round(2.0 * _BALL * model.table.radius) / 2.0), model.places
+    model = pad_model(pad, pad_pressure_kPa(pad), made_by)
+    least = 0.5 * math.ceil(2.0 * model.radii[0])
+    radius, places = max(0.5, round(2.0 * _BALL * model.table.radius) / 2.0, least), model.places
     apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1)) + np.diag(np.full(len(places), np.inf))
     pairs = [(j, k) for j, k in np.argwhere(apart <= _NEAR * apart.min()) if j < k]
     turns = _TURN * np.arange(len(_DEPTHS) * len(places)).reshape(-1, len(_DEPTHS))

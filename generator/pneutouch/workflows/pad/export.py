@@ -18,13 +18,13 @@ from pneutouch.workflows.export_reader import STEPS, simulator_files
 from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.campaign import noise_kPa
 from pneutouch.workflows.pad.load import ResolvedPad
-from pneutouch.workflows.pad.touch import calibrated_model, pad_model, pad_pressure_kPa
+from pneutouch.workflows.pad.touch import Tabulate, calibrated_model, pad_model, pad_pressure_kPa
 
 
-def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path) -> Path:
+def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path, made_by: Tabulate | None = None) -> Path:
     """Write ``out/<pad>-reader/``: header of C99 and Python module, by a calibration or as predicted at the greatest
     driving pressure of the cell. The same input gives the same bytes. Raises InputError as `calibrated_model`."""
-    model, error = _model(pad, calibration)
+    model, error = _model(pad, calibration, made_by)
     table = reader_table(model, noise_kPa(pad), error)
     made_of = digest(json_bytes(table))
     pressure_kPa = round(model.table.driving_pressure / KPA, 6)
@@ -33,26 +33,28 @@ def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path) -> Pa
     return write_folder(out / name, with_manifest(pad_reader_files(table, source), name, {"table": made_of}))
 
 
-def _model(pad: ResolvedPad, calibration: str | None) -> tuple[PadModel, float]:
+def _model(pad: ResolvedPad, calibration: str | None, made_by: Tabulate | None) -> tuple[PadModel, float]:
     """The forward model of a pad, and the error of its rises over the greatest."""
     error = TABLE_ERROR / 3.0
     if calibration is None:
-        return pad_model(pad, pad_pressure_kPa(pad)), error
+        return pad_model(pad, pad_pressure_kPa(pad), made_by), error
     # A fit to one ball does not lessen the error of the table for others.
-    model, known = calibrated_model(pad, calibration)
+    model, known = calibrated_model(pad, calibration, made_by)
     return model, max(error, known.model_error)
 
 
-def write_pad_simulator(pad: ResolvedPad, calibration: str | None, kind: str, out: Path) -> Path:
+def write_pad_simulator(
+    pad: ResolvedPad, calibration: str | None, kind: str, out: Path, made_by: Tabulate | None = None
+) -> Path:
     """Write ``out/<pad>-<kind>/``: the pad for a simulator as of `simulator_files`, by a calibration or as predicted as
     its reader, each dome as under a level plate. Raises InputError as `calibrated_model` and `simulator_files`."""
-    made_by = simulator_files(kind)
+    files = simulator_files(kind)
     if any(dome.shape != pad.layout.cell.shape for dome in pad.layout.domes):
         remedy = "give the groups driving pressures alone"
         raise InputError(
             "its domes differ, and those of a model are equal", file=pad.where, key="pad.groups", remedy=remedy
         )
-    model, _ = _model(pad, calibration)
+    model, _ = _model(pad, calibration, made_by)
     presses, domes = [_level_press(table) for table in model.tables], []
     for number, (place, of_cell, gain) in enumerate(
         zip(pad.layout.places, model.kind, model.gain, strict=True), start=1
@@ -64,7 +66,7 @@ def write_pad_simulator(pad: ResolvedPad, calibration: str | None, kind: str, ou
     density = pad.scene.membrane_material.density_g_per_cm3.nominal
     sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.layout.cell.shape, density, tuple(domes))
     name, follows_from = f"{pad.name}-{kind}", {**inputs(pad), "calibration": calibration}
-    return write_folder(out / name, with_manifest(made_by(sensor), name, follows_from))
+    return write_folder(out / name, with_manifest(files(sensor), name, follows_from))
 
 
 def _level_press(table: CellTable) -> tuple[Array, CellAnswer]:

@@ -152,18 +152,22 @@ def load_pad(name: str, changes: Changes | None = None, library: Library | None 
         raise InputError(
             error.problem, file=str(path), key="pad.cell", value=file.pad.cell, remedy=error.remedy
         ) from None
-    groups = [load_scene(source, {**of_cell, **_changes_of(group, path)}, library) for group in file.pad.groups]
+    groups = [
+        _scene_of(group, f"pad.groups[{k}]", path, source, of_cell, library) for k, group in enumerate(file.pad.groups)
+    ]
     return ResolvedPad(name_of(path), str(path), file, load_scene(source, of_cell, library), tuple(groups), library)
 
 
-def _changes_of(group: PadGroup, path: Path) -> Changes:
-    """Changes of a group. Raises InputError for one of what all cells of a membrane share."""
+def _scene_of(
+    group: PadGroup, key: str, path: Path, source: DesignSource, of_cell: Changes, library: Library
+) -> ResolvedDesign:
+    """The cell of a group. Raises InputError, also for what all cells of a membrane share."""
     try:
-        found = group.changes
+        shared = [one for one in group.changes if not one.startswith(_OF_GROUPS) or one == "membrane.material"]
+        if not shared:
+            return load_scene(source, {**of_cell, **group.changes}, library)
     except InputError as error:
-        raise InputError(error.problem, file=str(path), key="pad.groups", value=error.value) from None
-    for key in found:
-        if not key.startswith(_OF_GROUPS) or key == "membrane.material":
-            problem, remedy = f"{key} is that of all cells", "a group may differ in dome, test and driving pressure"
-            raise InputError(problem, file=str(path), key="pad.groups", value=found[key], remedy=remedy)
-    return found
+        problem = f"{error.key}: {error.problem}"
+        raise InputError(problem, file=str(path), key=key, value=error.value, remedy=error.remedy) from None
+    remedy = "a group may differ in dome, test and driving pressure"
+    raise InputError(f"{shared[0]} is that of all cells", file=str(path), key=key, remedy=remedy)

@@ -21,7 +21,7 @@ from pneutouch.units import KPA
 from pneutouch.workflows.pad.campaign import CAMPAIGN, channels, noise_kPa
 from pneutouch.workflows.pad.fault import PadFault, find_fault
 from pneutouch.workflows.pad.load import ResolvedPad, load_pad
-from pneutouch.workflows.pad.touch import pad_model
+from pneutouch.workflows.pad.touch import Tabulate, pad_model
 
 _MOST = 120
 """Number of readings of a run that are fitted, in equal steps over those with contact."""
@@ -84,12 +84,12 @@ def is_pad_campaign(path: Path) -> bool:
     return path.name == CAMPAIGN or is_file(path / CAMPAIGN)
 
 
-def read_campaign(path: Path) -> MeasuredPad:
+def read_campaign(path: Path, made_by: Tabulate | None = None) -> MeasuredPad:
     """The campaign of a folder, or of its file. Raises InputError for what cannot be read or is not of this pad."""
     file = path if path.name == CAMPAIGN else path / CAMPAIGN
     campaign: PadCampaign = validate(PadCampaign, read_toml(file), str(file))
     pad = load_pad(campaign.pad, parse_changes(campaign.assignments))
-    model = pad_model(pad, campaign.driving_pressure_kPa)
+    model = pad_model(pad, campaign.driving_pressure_kPa, made_by)
     if not model.radii[0] <= campaign.ball_radius_mm <= model.radii[1]:
         remedy = "give {:.3g} to {:.4g} mm".format(*model.radii)
         raise InputError("not tabulated", file=file, key="ball_radius_mm", value=campaign.ball_radius_mm, remedy=remedy)

@@ -35,22 +35,23 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate |
     cells = [pad.drawn(*kind) for kind in pad.worst_kinds]
     own_kPa = [driving_pressure_kPa, *(group.driving_pressure_kPa for group in pad.file.pad.groups)]
     pressures = [KPA * (driving_pressure_kPa if one_kPa is None else one_kPa) for one_kPa in own_kPa]
-    tables = [_table(pad, cell, pressure, made_by) for cell, pressure in zip(cells, pressures, strict=True)]
+    sensors = [_on_flange(pad, cell) for cell in cells]
+    tables = [_kept(sensor, pressure, made_by) for sensor, pressure in zip(sensors, pressures, strict=True)]
     kind, cavities = np.array(pad.file.pad.group_of), np.array([table.cavity for table in tables])
-    whole = cavities + [cell.sensor.gas.dead_volume for cell in cells]
+    whole = cavities + [sensor.gas.dead_volume for sensor in sensors]
     gain = whole[kind] / (ML * np.array(pad.dead_volumes_mL) + cavities[kind])
     return PadModel(np.array(pad.layout.places), tuple(tables), kind, gain)
 
 
-def _table(pad: ResolvedPad, cell: DrawnScene, pressure: float, made_by: Tabulate | None) -> CellTable:
-    """The table of a cell on its flange, at a driving pressure (MPa). Raises InputError as `pad_model`."""
+def _on_flange(pad: ResolvedPad, cell: DrawnScene) -> Sensor:
+    """A cell on its flange. Raises InputError as `pad_model`."""
     sensor, layout = cell.sensor, cell.assembly.layout
     shape = sensor.dome.shape
     why = sensor.protocol.other_contact if shape.domed else f"its dome is not round at its top: {shape.key}"
     if why is not None:
         remedy = "contact with several cells is computed for round domes under frictionless objects"
         raise InputError(f"of the cell {pad.file.pad.cell}: {why}", file=pad.where, key="pad.cell", remedy=remedy)
-    return _kept(sensor.replace(flange=(layout.flange_width, layout.flange_thickness)), pressure, made_by)
+    return sensor.replace(flange=(layout.flange_width, layout.flange_thickness))
 
 
 def pad_pressure_kPa(pad: ResolvedPad) -> float:
@@ -58,7 +59,7 @@ def pad_pressure_kPa(pad: ResolvedPad) -> float:
     return max(pad.scene.design.pneumatics.driving_pressures_kPa)
 
 
-def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibration]:
+def calibrated_model(pad: ResolvedPad, name: str, made_by: Tabulate | None = None) -> tuple[PadModel, PadCalibration]:
     """The forward model of a pad in hand, by a calibration, at its driving pressure. Raises InputError for an unknown
     calibration and for that of another pad."""
     calibration: PadCalibration = pad.library.load("pad-calibrations", name)
@@ -67,7 +68,7 @@ def calibrated_model(pad: ResolvedPad, name: str) -> tuple[PadModel, PadCalibrat
         remedy = f"calibrate {pad.name}, or give the calibration of this pad"
         problem = f"of the pad {calibration.pad}, whose cells lie elsewhere"
         raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
-    model = pad_model(pad, calibration.driving_pressure_kPa)
+    model = pad_model(pad, calibration.driving_pressure_kPa, made_by)
     scaled = tuple(table.scaled(force=calibration.force_factor) for table in model.tables)
     return replace(model, tables=scaled, gain=model.gain * calibration.rise_factors), calibration
 
