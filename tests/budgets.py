@@ -123,7 +123,7 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 92_842, 70_000),
+    Budget("lines of the package", package_lines, 92_871, 70_000),
     Budget("files of the package", package_files, 492, 450),
     Budget("lines of benchmarks", benchmark_lines, 7_644, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),

@@ -163,6 +163,7 @@ def test_groups_have_pressures_and_domes_of_their_own(home, tmp_path):
         ({"cells": [2, 2]}, "groups", "each once"),
         ({"cells": list(range(1, 8))}, "groups", "leave out"),
         ({"cells": [2], "assignments": ["membrane.material=FLX9950"]}, "pad.groups", "of all cells"),
+        ({"cells": [2], "assignments": ["pneumatics.driving_pressures_kPa=[5]"]}, "pad.groups[0]", "of all cells"),
         ({"cells": [2], "assignments": ["connector.port=luer-female"]}, "pad.groups", "of all cells"),
         ({"cells": [2], "assignments": ["membrane.inner_radius_mm"]}, "pad.groups[0]", "table.key=value"),
         ({"cells": [2], "assignments": ["membrane.inner_radius_mm=-1"]}, "pad.groups[0]", "membrane.inner_radius_mm"),
@@ -173,6 +174,24 @@ def test_a_group_that_cannot_be_is_refused(home, group, key, words):
     with pytest.raises(InputError) as caught:
         load_pad("tip", {"pad.groups": [group]})
     assert key in str(caught.value) and words in str(caught.value)
+
+
+def test_a_group_beyond_the_limit_point_is_named(home):
+    started(home, "row:2", 9.0)
+    pad = load_pad("tip", {"pad.groups": [{"cells": [2], "driving_pressure_kPa": 500.0}]})
+    with pytest.raises(InputError) as caught:
+        pad_findings(pad)
+    assert caught.value.file.endswith("tip.toml: pad.groups[0]")
+
+
+def test_the_pitch_that_is_named_has_space_for_every_pair(home):
+    started(home, "row:3", 9.0)
+    groups = [{"cells": [2], "assignments": ["membrane.inner_radius_mm=6"]}]
+    groups += [{"cells": [3], "assignments": ["membrane.inner_radius_mm=9"]}]
+    with pytest.raises(InputError) as caught:
+        _ = load_pad("tip", {"pad.groups": groups}).layout
+    least = float(caught.value.remedy.split("at least ")[1].split()[0])
+    assert load_pad("tip", {"pad.groups": groups, "pad.pitch_mm": least}).layout
 
 
 def test_neighbours_of_different_groups_meet_by_the_sum_of_their_radii(home):

@@ -168,6 +168,8 @@ def test_what_is_not_of_this_pad_is_refused(home, folder, tmp_path):
         save_calibration(kept.model_copy(update={"force_factor": 1.5}), "first", replace=False)
     with pytest.raises(InputError, match="elsewhere"):
         calibrated_model(load_pad("other"), "first")
+    with pytest.raises(InputError, match="groups"):
+        calibrated_model(load_pad("tip", {"pad.groups": [{"cells": [2], "driving_pressure_kPa": 5.0}]}), "first")
     for words in (
         ["plan", "tip", "--specimens", "2"],
         ["plan", "tip", "--calibration", "first"],

@@ -204,9 +204,10 @@ def _compared(pad: "ResolvedPad", made_by: "Tabulate") -> dict[str, str]:
         "force of a ball +-, N, median": f"{np.median(left.force):.2g}",
         "its place +-, mm, median": f"{np.median(left.place):.2g}",
     }
-    for cell in record.cells:
+    for number, _ in pad.worst_kinds:
+        cell = record.cells[pad.file.pad.group_of.index(number)]
         for one in cell.states:
-            values.setdefault(f"a cell at {one.driving_pressure_kPa:g} kPa, kPa/N", one.text)
+            values[f"cell {cell.number} at {one.driving_pressure_kPa:g} kPa, kPa/N"] = one.text
     return values
 
 

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pneutouch.spec.design import DocumentHead
 from pneutouch.spec.fields import EntryError, FieldsError, SparseTable, Table, number
-from pneutouch.spec.read import Changes, parse_changes
+from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
 
 MOST_CELLS = 64
@@ -47,11 +47,10 @@ class PadGroup(SparseTable):
     )
 
     @property
-    def changes(self) -> Changes:
-        """Changes of the cell's design by key. Raises InputError."""
+    def pressures(self) -> Changes:
+        """Change of the cell's design to the pressure that these cells hold, if they hold one of their own."""
         own_kPa = self.driving_pressure_kPa
-        given = {} if own_kPa is None else {"pneumatics.driving_pressures_kPa": [own_kPa]}
-        return {**parse_changes(self.assignments), **given}
+        return {} if own_kPa is None else {"pneumatics.driving_pressures_kPa": [own_kPa]}
 
 
 class PadTable(SparseTable):
@@ -180,6 +179,7 @@ class PadCalibration(Table):
 
     pad: str = Field(description="Name of the pad.")
     places_mm: list[list[float]] = Field(description="Axes [x, y] of its cells.")
+    groups: list[PadGroup] = Field(default=[], description="Its groups of cells.")
     driving_pressure_kPa: float = Field(ge=0, le=1000, description="Driving pressure of the campaign.")
     force_factor: float = Field(gt=0, le=20, description="Force over the predicted one, of every cell.")
     force_factor_uncertainty: float = Field(ge=0, le=20, description="Its standard uncertainty.")

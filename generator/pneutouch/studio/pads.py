@@ -105,10 +105,8 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
     low, high = corners.min(axis=0), corners.max(axis=0)
     half, (x, y) = math.ceil(0.5 * (high - low).max() + 1.0), np.round(0.5 * (low + high)).tolist()
     # Rounded inwards.
-    radii, steep = (
-        [dome.inner_radius for dome in pad.layout.domes],
-        math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3,
-    )
+    radii, heights = zip(*((dome.inner_radius, dome.shape.outer_height) for dome in pad.layout.domes), strict=True)
+    steep = math.floor(1e3 * math.tan(math.asin(TILTS[-1]))) / 1e3
     least, most = math.ceil(1e3 * RADII[0] * max(radii)) / 1e3, math.floor(1e3 * RADII[-1] * min(radii)) / 1e3
     pressures_kPa = pad.scene.design.pneumatics.driving_pressures_kPa
     first, deep = next((one_kPa for one_kPa in pressures_kPa if one_kPa > 0.0), pressures_kPa[0]), round(0.6 * depth, 1)
@@ -116,7 +114,16 @@ def _fields(pad: ResolvedPad) -> list[FormField]:
     rows: list[tuple[Any, ...]] = [
         ("pressure", "Driving pressure", "kPa", None, None, f"{first:g}", "Those of the cell's design.", pressures),
         ("object", "Object", "", None, None, "ball", "What touches the pad.", list(_OBJECTS)),
-        ("depth_mm", "Depth", "mm", 0.0, 1.5 * depth, deep, "Below the tops of the inflated domes.", []),
+        (
+            "depth_mm",
+            "Depth",
+            "mm",
+            0.0,
+            1.5 * depth + max(heights) - min(heights),
+            deep,
+            "Below the tops of the inflated domes.",
+            [],
+        ),
         ("radius_mm", "Radius", "mm", least, most, round(2.0 * least, 1), "A larger one is a plate.", []),
         ("x_mm", "At x", "mm", x - half, x + half, round(x + 0.2 * half, 1), "Place of its axis.", []),
         ("y_mm", "At y", "mm", y - half, y + half, round(y + 0.15 * half, 1), "Place of its axis.", []),

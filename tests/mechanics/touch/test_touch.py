@@ -10,6 +10,7 @@ from benchmarks import pad_coupling
 from benchmarks.store import stored
 
 from pneutouch.evaluation import evaluate
+from pneutouch.export.reader.pad_reading import PadForceReader
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.solid.indenter import ball, cylinder
 from pneutouch.mechanics.touch import cell as cells
@@ -72,6 +73,21 @@ def test_every_cell_answers_by_its_own_table_at_the_height_of_the_object(pad, mi
     assert np.allclose(both.rise[:, mixed.kind == 1], other.rise[:, mixed.kind == 1])
     assert both.force == pytest.approx(both.forces.sum(axis=1))
     assert (both.rise[:, mixed.kind == 0].max() > 0.0) and (both.rise[:, mixed.kind == 1].max() > 0.0)
+
+
+def test_objects_reach_a_cell_that_is_much_lower(pad, coarse):
+    low = PadModel(pad.places, (coarse, coarse.scaled(0.4)), np.array([0, 1, 0, 0, 0, 0, 0]), pad.gain)
+    objects = random_objects(low, "plate", 400, np.random.default_rng(2))
+    assert (answer_of(low, "plate", objects).forces[:, 1] > 0.0).mean() > 0.02
+    assert low.deepest > low.top - low.tables[1].apex + low.tables[1].depth
+
+
+def test_the_curvature_at_its_bound_is_told_where_a_group_has_larger_domes(pad, coarse):
+    large = PadModel(pad.places, (coarse, coarse.scaled(2.2)), np.array([0, 0, 0, 1, 0, 0, 0]), pad.gain)
+    reader = PadForceReader(reader_table(large, NOISE / KPA))
+    at = [0.3, 0.2, reader.table["bends"][1], large.top - coarse.apex + 0.8]
+    normal, *_ = reader._normal(0, at, reader.answer(0, at), [0.1] * 7, 0.01)
+    assert normal[2][2] > 0.0
 
 
 @pytest.mark.parametrize(("kind", "error"), [("ball", 0.08), ("plate", 0.01), ("cylinder", 0.06)])

@@ -161,12 +161,12 @@ class PadForceReader:
         deviation: float,
     ) -> tuple[list[list[float]], list[float], list[list[float]]]:
         """Normal matrix and slope of the square sum, parameters in their spreads, and derivatives of what is told."""
-        spread, size = self.table["spreads"][kind], len(at)
+        spread, size, middle = self.table["spreads"][kind], len(at), 0.5 * sum(self.table["bends"])
         columns: list[list[float]] = []
         turned = [[0.0] * size for _ in range(6)]
         turned[4][0], turned[5][1] = spread[:2]
         for i in range(size):
-            step = 0.01 * spread[i] * (-1.0 if kind != 1 and i == 2 and at[2] > 0.5 else 1.0)
+            step = 0.01 * spread[i] * (-1.0 if kind != 1 and i == 2 and at[2] > middle else 1.0)
             moved = self.answer(kind, [value + step * (i == j) for j, value in enumerate(at)])
             scale = spread[i] / step
             pairs = zip(moved[0], answer[0], self.used, strict=True)

@@ -88,6 +88,11 @@ class PadModel:
         """Greatest travel of an object on one cell."""
         return max(table.depth for table in self.tables)
 
+    @property
+    def deepest(self) -> float:
+        """Depth of an object beyond the range of every cell."""
+        return max(self.top - table.apex + 1.6 * table.depth for table in self.tables)
+
     def _under_round(self, kind: str, away: Array, radius: Array, depth: Array) -> PadAnswer:
         """Under bodies with axes ``away`` (m, n, 2) from those of the cells, at the nearest point."""
         distance = np.hypot(away[..., 0], away[..., 1])

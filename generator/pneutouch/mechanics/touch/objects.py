@@ -28,7 +28,7 @@ def random_objects(model: PadModel, kind: ObjectKind, count: int, random: np.ran
     low, high = model.radii
     reach = max(table.outer for table in model.tables) + np.abs(model.places).max(axis=0)
     while size < count:
-        depth = random.uniform(0.0, 1.6 * model.depth, count)
+        depth = random.uniform(0.0, model.deepest, count)
         if kind != "plate":
             bend = model.table.radius * random.uniform(1.0 / high, 1.0 / low, count)
             half, middle = reach, 0.0 * reach

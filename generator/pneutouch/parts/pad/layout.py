@@ -108,10 +108,13 @@ def lay_out_pad(scene: ResolvedDesign, table: PadTable, where: str, groups: Sequ
     cell, *others = _on_one_flange([lay_out(each) for each in (scene, *groups)])
     domes, places = tuple((cell, *others)[group] for group in table.group_of), table.places
     pitch = min(math.dist(one, other) for one, other in combinations(places, 2))
+    crowded = 1.0
     for (one, dome), (other, beside) in combinations(zip(places, domes, strict=True), 2):
-        least = sum(max(cell.outer_radius, cell.inner_radius) for cell in (dome, beside)) + _BETWEEN_DOMES
-        if (apart := math.dist(one, other)) < least - 1e-9:
-            raise _closer(table, where, apart, f"the domes need {least:.4g} mm from axis to axis", least)
+        least = sum(max(each.outer_radius, each.inner_radius) for each in (dome, beside)) + _BETWEEN_DOMES
+        crowded = max(crowded, least / (math.dist(one, other) + 1e-9))
+    if crowded > 1.0:
+        least = crowded * pitch
+        raise _closer(table, where, pitch, f"the domes need {least:.4g} mm from axis to axis", least)
     tube = 0.5 * scene.tube.outer_diameter
     fan = max(1.0, (2.0 * max(cell.port.reach, tube) + _BETWEEN_PORTS) / pitch)
     farthest = max(math.dist(at, middle_of(places)) for at in places)

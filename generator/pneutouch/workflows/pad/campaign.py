@@ -61,10 +61,11 @@ def plan_pad(pad: ResolvedPad, made_by: Tabulate | None = None) -> PadPlan:
     apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1)) + np.diag(np.full(len(places), np.inf))
     pairs = [(j, k) for j, k in np.argwhere(apart <= _NEAR * apart.min()) if j < k]
     turns = _TURN * np.arange(len(_DEPTHS) * len(places)).reshape(-1, len(_DEPTHS))
-    aside = _ASIDE * model.table.radius * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+    own = np.array([table.radius for table in model.tables])[model.kind, None, None]
+    aside = _ASIDE * own * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
     between = np.array([0.5 * (places[j] + places[k]) for j, k in pairs]).reshape(-1, 1, 2)
     spots = np.concatenate([places[:, None] + aside, np.repeat(between, len(_DEPTHS), axis=1)])
-    steps = np.linspace(0.02, 1.6, 159) * model.depth
+    steps = np.linspace(0.0125, 1.0, 159) * model.deepest
     presses = []
     for spot, share in zip(spots.reshape(-1, 2), np.tile(_DEPTHS, len(spots)), strict=True):
         answer = model.under_balls(np.broadcast_to(spot, (len(steps), 2)), np.full(len(steps), radius), steps)
@@ -112,9 +113,8 @@ def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = 
         rest[:, 2] = -1.0
         table = np.concatenate([np.concatenate([rest, row[None]]) for row in rows])
         table[:, 3] += campaign.force_resolution_N * random.standard_normal(len(table))
-        table[:, 4:] += campaign.driving_pressure_kPa + noise_kPa(plan.pad) * random.standard_normal(
-            (len(table), count)
-        )
+        held_kPa = np.array([table.driving_pressure for table in plan.model.tables])[plan.model.kind] / KPA
+        table[:, 4:] += held_kPa + noise_kPa(plan.pad) * random.standard_normal((len(table), count))
         heads = ["x_mm", "y_mm", "depth_mm", "force_N", *channels(count)]
         of_kind = dict(zip(heads, table.T, strict=True))
         files[run.file] = columns_csv({key: of_kind[key] for key in heads[0 if run.kind == "stage" else 3 :]})

@@ -27,14 +27,13 @@ def pad_findings(pad: ResolvedPad) -> list[Finding]:
     own, *others = [_context(pad, cell) for cell in pad.worst]
     reasons = pad.scene.design.accepted.reasons
     found = [*_channels_once(pad, check(subject_of(pad), own)), *_neighbours(pad)]
+    known = {(one.rule, one.message) for one in found}
     for group, context in zip(pad.file.pad.groups, others, strict=True):
-        known, cells = {(one.rule, one.message) for one in found}, ", ".join(map(str, group.cells))
-        more = check(PrintSubject((), (), pad.name), context)
-        found += [
-            replace(one, message=f"of cells {cells}: {one.message}")
-            for one in more
-            if (one.rule, one.message) not in known
-        ]
+        cells, more = ", ".join(map(str, group.cells)), check(subject_of(pad), context)
+        own_of_it = (
+            one for one in more if one.rule not in ("cleaning", "freedom") and (one.rule, one.message) not in known
+        )
+        found += [replace(one, message=f"of cells {cells}: {one.message}") for one in own_of_it]
     return sorted((accepted(one, reasons) for one in found), key=lambda one: one.rank)
 
 
@@ -109,7 +108,7 @@ def _neighbours(pad: ResolvedPad) -> Iterator[Finding]:
     pitch, needs, one, other = min(pairs, key=lambda pair: pair[0] - pair[1])
     if pitch >= needs:
         return
-    least = math.ceil(10.0 * needs) / 10.0
+    least = math.ceil(10.0 * needs / pitch * min(pairs)[0]) / 10.0
     message = (
         f"pressed to the end of their range, cells {one + 1} and {other + 1} bulge to {needs:.2f} mm and meet: "
         f"they stand {pitch:.2f} mm apart"

@@ -18,12 +18,12 @@ from pneutouch.parts.pad.solids import line_volume
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.pad import PadFile, PadGroup
 from pneutouch.spec.printer import Mode, Printer
-from pneutouch.spec.read import Changes, override, read_toml, validate
+from pneutouch.spec.read import Changes, override, parse_changes, read_toml, validate
 from pneutouch.spec.values import name_of
 from pneutouch.units import ML
 
-_OF_GROUPS = ("membrane.", "indentation.", "pneumatics.driving_pressures_kPa")
-"""Keys of a design in which a group may differ."""
+_OF_GROUPS = ("membrane.", "indentation.")
+"""Keys of a design in which a group may differ by assignments."""
 _DIGITS = 4
 """Decimals of a cell's dead volume, mL: cells of equal volume share one prediction."""
 
@@ -163,11 +163,13 @@ def _scene_of(
 ) -> ResolvedDesign:
     """The cell of a group. Raises InputError, also for what all cells of a membrane share."""
     try:
-        shared = [one for one in group.changes if not one.startswith(_OF_GROUPS) or one == "membrane.material"]
+        assigned = parse_changes(group.assignments)
+        shared = [one for one in assigned if not one.startswith(_OF_GROUPS) or one == "membrane.material"]
         if not shared:
-            return load_scene(source, {**of_cell, **group.changes}, library)
+            scene = load_scene(source, {**of_cell, **assigned, **group.pressures}, library)
+            return replace(scene, where=f"{path}: {key}")
     except InputError as error:
-        problem = f"{error.key}: {error.problem}"
+        problem = f"{'assignments' if error.key == 'set' else error.key}: {error.problem}"
         raise InputError(problem, file=str(path), key=key, value=error.value, remedy=error.remedy) from None
-    remedy = "a group may differ in dome, test and driving pressure"
+    remedy = "give changes of dome or test, and a driving pressure as driving_pressure_kPa"
     raise InputError(f"{shared[0]} is that of all cells", file=str(path), key=key, remedy=remedy)

@@ -270,6 +270,7 @@ def calibration_of(measured: MeasuredPad, fit: PadFit) -> PadCalibration:
     return PadCalibration(
         pad=measured.pad.name,
         places_mm=np.round(measured.model.places, 6).tolist(),
+        groups=measured.pad.file.pad.groups,
         driving_pressure_kPa=measured.campaign.driving_pressure_kPa,
         force_factor=fit.force_factor,
         force_factor_uncertainty=fit.of_force_factor,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -92,10 +92,10 @@ def sheet(
     left_out: Mapping[str, str],
 ) -> str:
     """Print sheet as Markdown, for the operator; ``left_out``: files not written, and why."""
-    scene, rated_kPa = pad.scene, min(cell.rating.pressure_kPa for cell in pad.worst)
+    scene, rated_kPa = pad.scene, [cell.rating.pressure_kPa for cell in pad.worst]
     last = [[one.figures for one in cell.prediction.states if one.figures is not None][-1:] for cell in pad.worst]
     fall = min((LEAK * one.sensitivity * one.force_high for figures in last for one in figures), default=None)
-    filled_kPa = max(fill_kPa(one, rated_kPa) for one in (scene, *pad.groups))
+    filled_kPa = [fill_kPa(one, own_kPa) for one, own_kPa in zip((scene, *pad.groups), rated_kPa, strict=True)]
     gas_mL = max(dome.shape.cavity_volume for dome in pad.layout.domes) / ML + max(pad.dead_volumes_mL)
     return filled(
         "pad.md.j2",
@@ -110,11 +110,19 @@ def sheet(
         input_hash=input_hash,
         left_out=left_out,
         glue=GLUES[name].title if (name := glue_of(scene)) else None,
-        fill_kPa=filled_kPa,
-        rated_kPa=rated_kPa,
+        fill_kPa=_by_group(pad, filled_kPa),
+        rated_kPa=_by_group(pad, rated_kPa),
         fall=fall,
-        leak_tools=leak_tools(gas_mL, filled_kPa, fall),
+        leak_tools=leak_tools(gas_mL, max(filled_kPa), fall),
     )
+
+
+def _by_group(pad: ResolvedPad, values: Sequence[float]) -> str:
+    """The value of the cells in no group, and those of groups that differ."""
+    first, *others = (f"{value:.3g}" for value in values)
+    pairs = zip(pad.file.pad.groups, others, strict=True)
+    differ = [f"cells {', '.join(map(str, group.cells))}: {own}" for group, own in pairs if own != first]
+    return f"{first} ({'; '.join(differ)})" if differ else first
 
 
 def drawing_svg(pad: ResolvedPad) -> bytes:

@@ -68,6 +68,9 @@ def calibrated_model(pad: ResolvedPad, name: str, made_by: Tabulate | None = Non
         remedy = f"calibrate {pad.name}, or give the calibration of this pad"
         problem = f"of the pad {calibration.pad}, whose cells lie elsewhere"
         raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
+    if calibration.groups != pad.file.pad.groups:
+        problem, remedy = "of this pad with other groups of cells", f"calibrate {pad.name} as it is"
+        raise InputError(problem, file=pad.where, key="calibration", value=name, remedy=remedy)
     model = pad_model(pad, calibration.driving_pressure_kPa, made_by)
     scaled = tuple(table.scaled(force=calibration.force_factor) for table in model.tables)
     return replace(model, tables=scaled, gain=model.gain * calibration.rise_factors), calibration
