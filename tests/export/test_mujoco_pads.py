@@ -105,6 +105,7 @@ def test_a_calibrated_pad_has_its_factors(folder, tmp_path):
     calibration = PadCalibration(
         pad="tip",
         places_mm=[list(place) for place in pad.layout.places],
+        groups=pad.file.pad.groups,
         driving_pressure_kPa=12.0,
         force_factor=1.2,
         force_factor_uncertainty=0.01,
