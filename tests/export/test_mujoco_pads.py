@@ -11,6 +11,7 @@ from pneutouch.api.pad import PadTouch
 from pneutouch.export.simulator.model import inertia_of
 from pneutouch.output.new_pad import new_pad
 from pneutouch.spec.pad import PadCalibration
+from pneutouch.workflows.pad.campaign import plan_pad, simulate_pad
 from pneutouch.workflows.pad.export import write_pad_simulator
 from pneutouch.workflows.pad.load import load_pad
 from pneutouch.workflows.pad.measured_files import save_calibration
@@ -98,6 +99,14 @@ def test_mass_is_that_of_the_print_and_every_dome_has_its_frame_in_urdf(folder, 
     at = np.array([joint.find("origin").get("xyz").split() for joint in frames], dtype=float)
     tops = [float(table.plates.first[0, 0]) for table in pad_model(pad, 12.0).tables]
     assert 1e3 * at == pytest.approx(np.column_stack([pad.layout.places, np.array(tops)[[0, 1, 0]]]), abs=1e-6)
+
+
+def test_simulated_gauges_rest_at_the_pressures_of_their_cells(folder, tmp_path):
+    made = simulate_pad(plan_pad(load_pad("tip", CHANGES)), tmp_path, 1, CHANGES)
+    text = (made / "runs/stage.csv").read_text().split("\n", 1)
+    at = dict(zip(text[0].split(","), np.loadtxt(text[1].splitlines(), delimiter=",").T, strict=True))
+    free = at["depth_mm"] < 0.0
+    assert [at[f"pressure_{k}_kPa"][free].mean() for k in (1, 2, 3)] == pytest.approx(HELD_KPA, abs=0.01)
 
 
 def test_a_calibrated_pad_has_its_factors(folder, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from pneutouch.units import ML
 from pneutouch.workflows.pad.build_pad import build_pad
 from pneutouch.workflows.pad.findings import pad_findings, widest
 from pneutouch.workflows.pad.load import load_pad
+from pneutouch.workflows.pad.pad_sheet import pad_record, sheet
 
 
 @pytest.fixture
@@ -174,6 +176,18 @@ def test_a_group_that_cannot_be_is_refused(home, group, key, words):
     with pytest.raises(InputError) as caught:
         load_pad("tip", {"pad.groups": [group]})
     assert key in str(caught.value) and words in str(caught.value)
+
+
+def test_the_sheet_tells_the_pressures_of_groups(home, tmp_path):
+    """A thicker wall is rated for more, and its leak test fills it to what it holds."""
+    started(home, "row:2", 14.0)
+    group = {"cells": [2], "driving_pressure_kPa": 40.0, "assignments": ["membrane.wall_thickness_mm=2"]}
+    pad = load_pad("tip", {"pad.groups": [group]})
+    thin, thick = (cell.rating.pressure_kPa for cell in pad.worst)
+    told = re.findall(r"([\d.]+) \(cells 2: ([\d.]+)\)", sheet(pad, pad_record(pad), [], (), "0", {}))
+    (fill, own_fill), (rated, own) = ([float(number) for number in pair] for pair in told)
+    assert [rated, own] == pytest.approx([thin, thick], rel=0.01) and thick > thin + 1.0
+    assert own_fill == 40.0 and fill < thin
 
 
 def test_a_group_beyond_the_limit_point_is_named(home):

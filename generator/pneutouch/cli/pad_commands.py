@@ -15,7 +15,6 @@ from pneutouch.errors import InputError
 from pneutouch.spec.values import plain_number
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.pad.load import ResolvedPad
     from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
     from pneutouch.workflows.pad.touch import Tabulate
 
@@ -169,6 +168,7 @@ def _row(one: "PadTrial", target: "PadTarget") -> list[str]:
 def compare_pads(context: typer.Context, names: list[str], set_: list[str] | None) -> None:
     """Print sizes, figures and resolution of pads side by side."""
     from pneutouch.workflows.pad.load import load_pad
+    from pneutouch.workflows.pad.select_pads import compared
 
     _refuse_others(context, names[0], "things", "set_")
     for name in names:
@@ -176,39 +176,9 @@ def compare_pads(context: typer.Context, names: list[str], set_: list[str] | Non
             raise InputError("is no pad", key="things", value=name, remedy="compare pads with pads")
     pads = [load_pad(name, changes(set_)) for name in names]
     with _tabulating("comparing") as made_by:
-        columns = [_compared(pad, made_by) for pad in pads]
+        columns = [compared(pad, made_by) for pad in pads]
     keys = dict.fromkeys(key for column in columns for key in column)
     echo(table_text(["", *names], [[key, *(column.get(key, "") for column in columns)] for key in keys]))
-
-
-def _compared(pad: "ResolvedPad", made_by: "Tabulate") -> dict[str, str]:
-    """Values of a pad by what they are: those of its record, and what a reading of a ball leaves open."""
-    import numpy as np
-
-    from pneutouch.mechanics.touch.objects import random_objects
-    from pneutouch.mechanics.touch.resolution import resolution
-    from pneutouch.units import KPA
-    from pneutouch.workflows.pad.campaign import noise_kPa
-    from pneutouch.workflows.pad.pad_sheet import pad_record
-    from pneutouch.workflows.pad.touch import pad_model, pad_pressure_kPa
-
-    record, model = pad_record(pad), pad_model(pad, pad_pressure_kPa(pad), made_by)
-    balls = random_objects(model, "ball", 1000, np.random.default_rng(1))
-    left = resolution(model, "ball", balls, noise_kPa(pad) * KPA)
-    values = {
-        "cells": f"{len(record.cells)}, {record.layout}",
-        "pitch, mm": f"{record.pitch_mm:.3g}",
-        "size, mm": "{:.1f} x {:.1f}".format(*record.width_mm),
-        "manifold, mm": f"{record.thickness_mm:.3g}",
-        "mass, g": f"{sum(solid.mass for solid in pad.solids):.3g}",
-        "force of a ball +-, N, median": f"{np.median(left.force):.2g}",
-        "its place +-, mm, median": f"{np.median(left.place):.2g}",
-    }
-    for number, _ in pad.worst_kinds:
-        cell = record.cells[pad.file.pad.group_of.index(number)]
-        for one in cell.states:
-            values[f"cell {cell.number} at {one.driving_pressure_kPa:g} kPa, kPa/N"] = one.text
-    return values
 
 
 @contextmanager

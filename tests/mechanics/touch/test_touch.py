@@ -65,14 +65,14 @@ def test_every_cell_answers_by_its_own_table_at_the_height_of_the_object(pad, mi
     both, lower = answer_of(mixed, kind, objects), objects.copy()
     lower[:, -1] -= mixed.top - pad.top
     own = answer_of(pad, kind, lower)
-    assert np.allclose(both.rise[:, mixed.kind == 0], own.rise[:, mixed.kind == 0])
+    assert np.allclose(both.rise[:, mixed.table_of == 0], own.rise[:, mixed.table_of == 0])
     larger = PadModel.alike(pad.places, mixed.tables[1], pad.gain)
     radius = mixed.table.radius / objects[:, 2] if kind != "plate" else None
     under = {"ball": larger.under_balls, "plate": larger.under_plates, "cylinder": larger.under_cylinders}[kind]
     other = under(objects[:, :2], *([] if radius is None else [radius]), objects[:, -1])
-    assert np.allclose(both.rise[:, mixed.kind == 1], other.rise[:, mixed.kind == 1])
+    assert np.allclose(both.rise[:, mixed.table_of == 1], other.rise[:, mixed.table_of == 1])
     assert both.force == pytest.approx(both.forces.sum(axis=1))
-    assert (both.rise[:, mixed.kind == 0].max() > 0.0) and (both.rise[:, mixed.kind == 1].max() > 0.0)
+    assert (both.rise[:, mixed.table_of == 0].max() > 0.0) and (both.rise[:, mixed.table_of == 1].max() > 0.0)
 
 
 def test_objects_reach_a_cell_that_is_much_lower(pad, coarse):

@@ -185,7 +185,7 @@ class PadForceReader:
         table, rises, inside = self.table, [], True
         force = x = y = 0.0
         cos, sin = math.cos(at[0]), math.sin(at[0])
-        for (cell_x, cell_y), gain, number in zip(self.places, table["gains"], table["kinds"], strict=True):
+        for (cell_x, cell_y), gain, number in zip(self.places, table["gains"], table["table_of"], strict=True):
             cell = table["tables"][number]
             if kind != 1:
                 bend = min(max(at[2], table["bends"][0]), table["bends"][1])

@@ -31,12 +31,12 @@ class PadAnswer(NamedTuple):
 
 @dataclass(frozen=True)
 class PadModel:
-    """Forward model of a pad: places (n, 2) of its cells, mm; the tables of its kinds of cells; and for each cell (n,)
-    its kind, and its pressure rise over that of its table's cell, by its gas."""
+    """Forward model of a pad: places (n, 2) of its cells, mm; the tables of cells that differ; and for each cell (n,)
+    the number of its table, and its pressure rise over that of the table's cell, by its gas."""
 
     places: Array
     tables: tuple[CellTable, ...]
-    kind: Indices
+    table_of: Indices
     gain: Array
 
     @staticmethod
@@ -78,6 +78,10 @@ class PadModel:
         """Table of the cell whose inner radius is the unit of curvatures."""
         return self.tables[0]
 
+    def of_cells(self, name: str) -> Array:
+        """A number of every cell (n,), by its name in the tables."""
+        return np.array([getattr(table, name) for table in self.tables])[self.table_of]
+
     @property
     def top(self) -> float:
         """Height of the highest dome over the base plane, from which depths count."""
@@ -105,10 +109,10 @@ class PadModel:
         """Answers (m, n) of every cell by its own table, to arrays (m, n)."""
         if len(self.tables) == 1:
             return ask(self.table, *at)
-        own = [self.kind == number for number in range(len(self.tables))]
+        own = [self.table_of == number for number in range(len(self.tables))]
         pairs = zip(self.tables, own, strict=True)
         answers = [ask(table, *(one[:, cells] for one in at)) for table, cells in pairs]
-        back = np.argsort(np.argsort(self.kind, kind="stable"))
+        back = np.argsort(np.argsort(self.table_of, kind="stable"))
         return CellAnswer(*(np.concatenate(parts, axis=1)[:, back] for parts in zip(*answers, strict=True)))
 
     def _sum(self, answer: CellAnswer, towards: Array) -> PadAnswer:

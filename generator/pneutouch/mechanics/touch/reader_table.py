@@ -34,7 +34,7 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
     return {
         "places_mm": _single(model.places),
         "gains": _single(model.gain),
-        "kinds": model.kind.tolist(),
+        "table_of": model.table_of.tolist(),
         "noise_kPa": _single(noise_kPa),
         "touched_kPa": _single(_TOUCHED * noise_kPa),
         "model_error": _single(np.hypot(model_error, STRAIGHT)),
@@ -43,7 +43,7 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
         "bends": _single([radius / size for size in reversed(model.radii)]),
         "steepest": _single(TILTS[-1]),
         "spreads": [_single(objects.std(axis=0)) for objects in drawn],
-        "tables": [_of_kind(table, radius) for table in model.tables],
+        "tables": [_nodes_of(table, radius) for table in model.tables],
         "starts": [
             _starts(model, kind, objects, size, noise_kPa)
             for kind, objects, size in zip(KINDS, drawn, STARTS, strict=True)
@@ -51,8 +51,8 @@ def reader_table(model: PadModel, noise_kPa: float, model_error: float = TABLE_E
     }
 
 
-def _of_kind(table: CellTable, unit: float) -> Mapping[str, Any]:
-    """A kind of cells; ``unit`` is the inner radius over which curvatures count."""
+def _nodes_of(table: CellTable, unit: float) -> Mapping[str, Any]:
+    """The table of a cell as data; ``unit`` is the inner radius over which curvatures count."""
     bends = np.linspace(1.0 / RADII[-1], 1.0 / RADII[0], _BENDS)
     shares, leans = np.linspace(0.0, 1.0, _SHARES), np.linspace(0.0, TILTS[-1], _LEANS)
     axes = (bends, shares), (np.ones(1), leans), (bends, shares)

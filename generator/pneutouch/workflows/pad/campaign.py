@@ -46,7 +46,7 @@ class PadPlan(NamedTuple):
     @property
     def highest(self) -> int:
         """Number of a cell with the highest dome, from whose top depths count."""
-        return 1 + int(np.argmax([self.model.tables[kind].apex for kind in self.model.kind]))
+        return 1 + int(np.argmax(self.model.of_cells("apex")))
 
 
 def plan_pad(pad: ResolvedPad, made_by: Tabulate | None = None) -> PadPlan:
@@ -61,8 +61,7 @@ def plan_pad(pad: ResolvedPad, made_by: Tabulate | None = None) -> PadPlan:
     apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1)) + np.diag(np.full(len(places), np.inf))
     pairs = [(j, k) for j, k in np.argwhere(apart <= _NEAR * apart.min()) if j < k]
     turns = _TURN * np.arange(len(_DEPTHS) * len(places)).reshape(-1, len(_DEPTHS))
-    own = np.array([table.radius for table in model.tables])[model.kind, None, None]
-    aside = _ASIDE * own * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+    aside = _ASIDE * model.of_cells("radius")[:, None, None] * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
     between = np.array([0.5 * (places[j] + places[k]) for j, k in pairs]).reshape(-1, 1, 2)
     spots = np.concatenate([places[:, None] + aside, np.repeat(between, len(_DEPTHS), axis=1)])
     steps = np.linspace(0.0125, 1.0, 159) * model.deepest
@@ -113,8 +112,8 @@ def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = 
         rest[:, 2] = -1.0
         table = np.concatenate([np.concatenate([rest, row[None]]) for row in rows])
         table[:, 3] += campaign.force_resolution_N * random.standard_normal(len(table))
-        held_kPa = np.array([table.driving_pressure for table in plan.model.tables])[plan.model.kind] / KPA
-        table[:, 4:] += held_kPa + noise_kPa(plan.pad) * random.standard_normal((len(table), count))
+        rest_kPa = plan.model.of_cells("driving_pressure") / KPA
+        table[:, 4:] += rest_kPa + noise_kPa(plan.pad) * random.standard_normal((len(table), count))
         heads = ["x_mm", "y_mm", "depth_mm", "force_N", *channels(count)]
         of_kind = dict(zip(heads, table.T, strict=True))
         files[run.file] = columns_csv({key: of_kind[key] for key in heads[0 if run.kind == "stage" else 3 :]})

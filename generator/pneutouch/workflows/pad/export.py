@@ -57,7 +57,7 @@ def write_pad_simulator(
     model, _ = _model(pad, calibration, made_by)
     presses, domes = [_level_press(table) for table in model.tables], []
     for number, (place, of_cell, gain) in enumerate(
-        zip(pad.layout.places, model.kind, model.gain, strict=True), start=1
+        zip(pad.layout.places, model.table_of, model.gain, strict=True), start=1
     ):
         table, (travel, answer) = model.tables[of_cell], presses[of_cell]
         press = float(table.plates.first[0, 0]), travel, answer.force, float(gain) * answer.rise / KPA

@@ -105,7 +105,7 @@ def _neighbours(pad: ResolvedPad) -> Iterator[Finding]:
     pairs = [
         (math.dist(places[a], places[b]), radii[a] + radii[b], a, b) for a, b in combinations(range(len(places)), 2)
     ]
-    pitch, needs, one, other = min(pairs, key=lambda pair: pair[0] - pair[1])
+    pitch, needs, one, other = min(pairs, key=lambda pair: pair[0] / pair[1])
     if pitch >= needs:
         return
     least = math.ceil(10.0 * needs / pitch * min(pairs)[0]) / 10.0

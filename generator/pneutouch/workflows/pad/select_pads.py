@@ -1,4 +1,4 @@
-"""Pads for a wanted resolution: patterns of similar cells over an area, each read back under random balls."""
+"""Pads for a wanted resolution: patterns of similar cells, each read back under random balls; and pads side by side."""
 
 import math
 from functools import cache
@@ -14,12 +14,17 @@ from pneutouch.mechanics.touch.cell import RADII, CellTable
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.mechanics.touch.reader_table import reader_table
+from pneutouch.mechanics.touch.resolution import resolution
 from pneutouch.output.files import CHARTS_MANIFEST, replace_own
 from pneutouch.report.chart import Chart, Panel, PlotLine, drawn_svg
 from pneutouch.report.style import FAINT
 from pneutouch.spec.pad import MOST_CELLS, PadTable
 from pneutouch.units import KPA, ML, STANDARD_ATMOSPHERE
+from pneutouch.workflows.pad.campaign import noise_kPa
 from pneutouch.workflows.pad.fault import pad_reader
+from pneutouch.workflows.pad.load import ResolvedPad
+from pneutouch.workflows.pad.pad_sheet import pad_record
+from pneutouch.workflows.pad.touch import Tabulate, pad_model, pad_pressure_kPa
 
 SIMILAR = Path(__file__).with_name("similar_cell.npz")
 """Table of a cell of R0 2.78 mm, wall 1 mm, of TangoPlus, at 12 kPa, pitch 9 mm, with 1.5 mL behind it; all cells are
@@ -126,6 +131,28 @@ def _noise(name: str | None) -> float:
     gauge = None if name is None else Library.default().load("gauges", name, key="gauge")
     scatter = gauge_reading(gauge, STANDARD_ATMOSPHERE).scatter
     return PAPER_NOISE if scatter is None else scatter
+
+
+def compared(pad: ResolvedPad, made_by: Tabulate | None = None) -> dict[str, str]:
+    """Values of a pad by what they are, for a comparison: those of its record, and the median standard deviations of a
+    reading of random balls. Raises InputError as `pad_model`."""
+    record, model = pad_record(pad), pad_model(pad, pad_pressure_kPa(pad), made_by)
+    balls = random_objects(model, "ball", 1000, np.random.default_rng(1))
+    left = resolution(model, "ball", balls, noise_kPa(pad) * KPA)
+    values = {
+        "cells": f"{len(record.cells)}, {record.layout}",
+        "pitch, mm": f"{record.pitch_mm:.3g}",
+        "size, mm": "{:.1f} x {:.1f}".format(*record.width_mm),
+        "manifold, mm": f"{record.thickness_mm:.3g}",
+        "mass, g": f"{sum(solid.mass for solid in pad.solids):.3g}",
+        "force of a ball +-, N, median": f"{np.median(left.force):.2g}",
+        "its place +-, mm, median": f"{np.median(left.place):.2g}",
+    }
+    for number, _ in pad.worst_kinds:
+        cell = record.cells[pad.file.pad.group_of.index(number)]
+        for one in cell.states:
+            values[f"cell {cell.number} at {one.driving_pressure_kPa:g} kPa, kPa/N"] = one.text
+    return values
 
 
 def write_pad_chart(trials: list[PadTrial], target: PadTarget, folder: Path) -> None:
