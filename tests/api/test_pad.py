@@ -120,3 +120,17 @@ def test_a_cell_that_the_table_does_not_cover_is_refused(change, tmp_path, monke
     with pytest.raises(InputError) as caught:
         pad_model(resolved("tip", change), 5.0)
     assert caught.value.key == "pad.cell"
+
+
+@pytest.mark.parametrize(("held_kPa", "key"), [(500.0, "driving_pressure_kPa"), (12.0, "pad.groups[0]")])
+def test_a_pressure_beyond_the_limit_point_names_what_states_it(touch, held_kPa, key, tmp_path, monkeypatch):
+    table, made_by = touch._model.table, touching.cell_table
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    monkeypatch.setattr(
+        touching, "_kept", lambda sensor, pressure, _: table if pressure < 0.1 else made_by(sensor, pressure)
+    )
+    new_pad("tip", tmp_path / "designs", "row:2", 9.0)
+    with pytest.raises(InputError) as caught:
+        touching.pad_model(resolved("tip", {"pad.groups": [{"cells": [2], "driving_pressure_kPa": 500.0}]}), held_kPa)
+    assert caught.value.key == key and caught.value.value == 500.0
+    assert 10.0 < float(caught.value.remedy.rsplit(" ", 1)[1]) < 200.0

@@ -50,19 +50,15 @@ def write_pad_simulator(
     its reader, each dome as under a level plate. Raises InputError as `calibrated_model` and `simulator_files`."""
     files = simulator_files(kind)
     if any(dome.shape != pad.layout.cell.shape for dome in pad.layout.domes):
-        remedy = "give the groups driving pressures alone"
-        raise InputError(
-            "its domes differ, and those of a model are equal", file=pad.where, key="pad.groups", remedy=remedy
-        )
+        problem, remedy = "its domes differ, and those of a model are equal", "give groups driving pressures alone"
+        raise InputError(problem, file=pad.where, key="pad.groups", remedy=remedy)
     model, _ = _model(pad, calibration, made_by)
     presses, domes = [_level_press(table) for table in model.tables], []
-    for number, (place, of_cell, gain) in enumerate(
-        zip(pad.layout.places, model.table_of, model.gain, strict=True), start=1
-    ):
-        table, (travel, answer) = model.tables[of_cell], presses[of_cell]
-        press = float(table.plates.first[0, 0]), travel, answer.force, float(gain) * answer.rise / KPA
+    for number, (place, k) in enumerate(zip(pad.layout.places, model.table_of, strict=True)):
+        table, (travel, answer), gain = model.tables[k], presses[k], float(model.gain[number])
+        press = float(table.plates.first[0, 0]), travel, answer.force, gain * answer.rise / KPA
         states = (press_table(round(table.driving_pressure / KPA, 6), *press),)
-        domes.append(SimulatedDome(f"{pad.name}-{number}", 1e-3 * np.array([*place, 0.0]), states))
+        domes.append(SimulatedDome(f"{pad.name}-{number + 1}", 1e-3 * np.array([*place, 0.0]), states))
     density = pad.scene.membrane_material.density_g_per_cm3.nominal
     sensor = simulated_sensor(pad.name, pad.bodies, pad.solids, pad.layout.cell.shape, density, tuple(domes))
     name, follows_from = f"{pad.name}-{kind}", {**inputs(pad), "calibration": calibration}

@@ -19,7 +19,7 @@ from pneutouch.workflows.pad.load import ResolvedPad
 _HINTS: dict[str, dict[str, str]] = data_of(__file__)
 """Remedies in the files of pad and cell by body and rule."""
 
-_ANGLES, _ROWS = np.zeros(1), 4
+_ANGLES, _ROWS, _OF_PLACE = np.zeros(1), 4, ("cleaning", "freedom")
 
 
 def pad_findings(pad: ResolvedPad) -> list[Finding]:
@@ -30,10 +30,8 @@ def pad_findings(pad: ResolvedPad) -> list[Finding]:
     known = {(one.rule, one.message) for one in found}
     for group, context in zip(pad.file.pad.groups, others, strict=True):
         cells, more = ", ".join(map(str, group.cells)), check(subject_of(pad), context)
-        own_of_it = (
-            one for one in more if one.rule not in ("cleaning", "freedom") and (one.rule, one.message) not in known
-        )
-        found += [replace(one, message=f"of cells {cells}: {one.message}") for one in own_of_it]
+        new = [one for one in more if one.rule not in _OF_PLACE and (one.rule, one.message) not in known]
+        found += [replace(one, message=f"of cells {cells}: {one.message}") for one in new]
     return sorted((accepted(one, reasons) for one in found), key=lambda one: one.rank)
 
 

@@ -8,7 +8,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from pneutouch.errors import InputError
+from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.evaluation.evaluate import DrawnScene
 from pneutouch.mechanics.models.local import cache_folder, fingerprint, store_arrays
 from pneutouch.mechanics.sensor import Sensor
@@ -34,9 +34,15 @@ def pad_model(pad: ResolvedPad, driving_pressure_kPa: float, made_by: Tabulate |
         raise InputError("below ambient", key="driving_pressure_kPa", value=driving_pressure_kPa, remedy=remedy)
     cells = [pad.drawn(*kind) for kind in pad.worst_kinds]
     own_kPa = [driving_pressure_kPa, *(group.driving_pressure_kPa for group in pad.file.pad.groups)]
-    pressures = [KPA * (driving_pressure_kPa if one_kPa is None else one_kPa) for one_kPa in own_kPa]
-    sensors = [_on_flange(pad, cell) for cell in cells]
-    tables = [_kept(sensor, pressure, made_by) for sensor, pressure in zip(sensors, pressures, strict=True)]
+    held_kPa = [driving_pressure_kPa if one_kPa is None else one_kPa for one_kPa in own_kPa]
+    sensors, tables = [_on_flange(pad, cell) for cell in cells], []
+    for number, sensor in enumerate(sensors):
+        try:
+            tables.append(_kept(sensor, KPA * held_kPa[number], made_by))
+        except BeyondLimitError as error:
+            key = f"pad.groups[{number - 1}]" if number else "driving_pressure_kPa"
+            problem, remedy = "the dome snaps before, at its limit point", f"give less than {error.limit / KPA:.4g}"
+            raise InputError(problem, file=pad.where, key=key, value=held_kPa[number], remedy=remedy) from None
     kind, cavities = np.array(pad.file.pad.group_of), np.array([table.cavity for table in tables])
     whole = cavities + [sensor.gas.dead_volume for sensor in sensors]
     gain = whole[kind] / (ML * np.array(pad.dead_volumes_mL) + cavities[kind])
