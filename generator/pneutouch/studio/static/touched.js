@@ -96,7 +96,7 @@ export class PadPicture {
 
   /** Bars of the cells over their numbers. */
   chart(rises) {
-    const [width, left, bottom] = [this.bars.clientWidth, 46, HIGH - 36];
+    const [width, left, bottom] = [this.bars.clientWidth, 64, HIGH - 36];
     if (!width) return;
     const [step, y] = [(width - left) / rises.length, (value) => bottom - (value / this.top) * (bottom - 16)];
     const ticks = rounds(0, this.top, 4).flatMap((each) => [svg("path", { d: `M${left - 5} ${y(each)}H${width}`, class: "tick" }), written(short(each), { x: left - 8, y: y(each) + 4, "text-anchor": "end" })]);
