@@ -38,7 +38,7 @@ CASES = {
         "grid:2x2",
         15.0,
         {**SMALL, "membrane.inner_radius_mm": 4.0, "connector.port": "barb-3x2"},
-        {"membrane.inner_radius_mm": 5.0, "membrane.wall_thickness_mm": 1.1, "membrane.shape": "ellipsoid"},
+        {"membrane.inner_radius_mm": 5.0, "membrane.wall_thickness_mm": 2.2, "membrane.shape": "ellipsoid"},
     ),
     "palm": ("hex:19", 9.0, {**SMALL, "membrane.inner_radius_mm": 3.0, "connector.port": "barb-3x2"}),
 }
@@ -114,10 +114,13 @@ def test_a_group_has_domes_of_its_own_on_the_flange_of_the_thickest():
     scene, pad = made(*CASES["domes of two sizes and walls"])
     assert [dome.inner_radius for dome in pad.domes] == [5.0, 4.0, 4.0, 5.0]
     assert {dome.plate_high for dome in pad.domes} == {-pad.domes[0].flange_thickness}
-    corners = pad_solids(scene, pad)[0].mesh(0.02).corners.reshape(-1, 3)
+    membrane, manifold = (solid.mesh(0.02).corners.reshape(-1, 3) for solid in pad_solids(scene, pad))
     for (x, y), dome in zip(pad.places, pad.domes, strict=True):
-        over = corners[np.hypot(corners[:, 0] - x, corners[:, 1] - y) < dome.outer_radius]
+        over = membrane[np.hypot(membrane[:, 0] - x, membrane[:, 1] - y) < dome.outer_radius]
         assert over[:, 2].max() == pytest.approx(dome.shape.outer_height, abs=1e-6)
+        away = np.hypot(manifold[:, 0] - x, manifold[:, 1] - y)
+        on_top = (manifold[:, 2] > dome.floor - 1e-6) & (away < dome.outer_radius)
+        assert away[on_top].max() == pytest.approx(dome.groove_inner, rel=0.005)
 
 
 @settings(max_examples=60, deadline=None)

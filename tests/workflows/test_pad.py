@@ -200,8 +200,8 @@ def test_a_group_beyond_the_limit_point_is_named(home):
 
 def test_the_pitch_that_is_named_has_space_for_every_pair(home):
     started(home, "row:3", 9.0)
-    groups = [{"cells": [2], "assignments": ["membrane.inner_radius_mm=6"]}]
-    groups += [{"cells": [3], "assignments": ["membrane.inner_radius_mm=9"]}]
+    groups = [{"cells": [1], "assignments": ["membrane.inner_radius_mm=6"]}]
+    groups += [{"cells": [2], "assignments": ["membrane.inner_radius_mm=9"]}]
     with pytest.raises(InputError) as caught:
         _ = load_pad("tip", {"pad.groups": groups}).layout
     least = float(caught.value.remedy.split("at least ")[1].split()[0])
@@ -213,3 +213,15 @@ def test_neighbours_of_different_groups_meet_by_the_sum_of_their_radii(home):
     pad = load_pad("tip", {"pad.groups": [{"cells": [2], "assignments": ["membrane.inner_radius_mm=7.2"]}]})
     (found,) = [one for one in pad_findings(pad) if one.rule == "neighbours"]
     assert found.excess.limit == pytest.approx(sum(widest(pad))) and widest(pad)[0] < widest(pad)[1]
+
+
+def test_cells_that_meet_across_a_grid_name_the_pitch_at_which_they_do_not(home):
+    started(home, "grid:2x2", 24.0)
+    sizes = "membrane.inner_radius_mm=13.8", "membrane.wall_thickness_mm=2.4", "indentation.plate_diameter_mm=60"
+    group = {"cells": [1, 4], "assignments": list(sizes)}
+    changes = {"pad.groups": [group], "membrane.inner_radius_mm": 3.5, "membrane.wall_thickness_mm": 0.8}
+    pad = load_pad("tip", changes)
+    (found,) = [one for one in pad_findings(pad) if one.rule == "neighbours"]
+    assert found.excess.limit == pytest.approx(2.0 * widest(pad)[1])
+    named = float(re.search(r"pitch_mm to ([\d.]+)", found.fix)[1])
+    assert named == pytest.approx(found.excess.limit / np.sqrt(2.0), abs=0.11)

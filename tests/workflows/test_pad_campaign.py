@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.output.new_pad import new_pad
 from pneutouch.workflows.pad import campaign, measured
 from pneutouch.workflows.pad.load import load_pad
@@ -55,6 +56,17 @@ def test_presses_are_on_every_cell_and_between_neighbours_within_the_range(plan)
     away = np.hypot(*(presses[:, None, :2] - places).transpose(2, 0, 1)).min(axis=1)
     assert len(presses) == 15 and (away < 4.6).all() and (away < 1.5).sum() == 9
     assert plan[0].answer.inside.all() and (plan[0].answer.force > 0.0).all()
+
+
+def test_presses_on_a_larger_dome_are_as_far_beside_its_axis(plan, monkeypatch):
+    own = plan[0].model
+    mixed = PadModel(3.0 * own.places, (own.table, own.table.scaled(2.6)), np.array([0, 1, 0]), own.gain)
+    monkeypatch.setattr(campaign, "pad_model", lambda *given: mixed)
+    made = campaign.plan_pad(plan[0].pad)
+    assert made.radius >= mixed.radii[0] and made.highest == 2
+    for place, table in zip(mixed.places, mixed.of_cells("radius"), strict=True):
+        away = np.sort(np.hypot(*(made.presses[:, :2] - place).T))
+        assert away[:3] == pytest.approx([0.5 * table] * 3, abs=0.02)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
