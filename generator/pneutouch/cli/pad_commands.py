@@ -15,6 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.values import plain_number
 
 if TYPE_CHECKING:
+    from pneutouch.workflows.live.sensor import LiveSensor
     from pneutouch.workflows.pad.select_pads import PadTarget, PadTrial
     from pneutouch.workflows.pad.touch import Tabulate
 
@@ -116,6 +117,17 @@ def export_a_pad(
     echo(str(folder))
     files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
     notify(f"how to use it: {f'the examples at the head of {files}' if files else folder / 'README.md'}")
+
+
+def live_of_pad(name: str, set_: list[str] | None, calibration: str | None) -> "LiveSensor":
+    """A pad to be read live."""
+    from pneutouch.workflows.live.live_pad import live_pad
+    from pneutouch.workflows.pad.export import pad_tables
+    from pneutouch.workflows.pad.load import load_pad
+
+    pad = load_pad(name, changes(set_))
+    with _tabulating() as made_by:
+        return live_pad(pad.name, *pad_tables(pad, calibration, made_by))
 
 
 def select_a_pad(

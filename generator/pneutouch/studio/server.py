@@ -36,6 +36,7 @@ from pneutouch.studio.guard import (
     too_little_memory,
 )
 from pneutouch.studio.jobs import Desk
+from pneutouch.studio.live import LiveDesk
 from pneutouch.studio.pads import Pads
 from pneutouch.studio.solver import Solver, SupersededError
 
@@ -56,7 +57,7 @@ class PageFile(NamedTuple):
 
 
 def page_files() -> dict[str, PageFile]:
-    """The files by the path that they are requested at; ``/`` is the page, which ``/pad`` opens on a pad."""
+    """The files by the path that they are requested at; ``/`` is the page, which ``/pad`` and ``/live`` open there."""
     root = files("pneutouch.studio") / "static"
     files_by_path = {}
     for folder, prefix in ((root, "/"), (root / "vendor", "/vendor/")):
@@ -65,7 +66,7 @@ def page_files() -> dict[str, PageFile]:
             if kind is not None and entry.is_file():
                 content = entry.read_bytes()
                 files_by_path[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
-    files_by_path["/"] = files_by_path["/pad"] = files_by_path.pop("/index.html")
+    files_by_path["/"] = files_by_path["/pad"] = files_by_path["/live"] = files_by_path.pop("/index.html")
     return files_by_path
 
 
@@ -95,6 +96,7 @@ class Studio:
         self._library = PageLibrary(Library.default().folders)
         self.answers, self.pads = Answers(bases, self._library), Pads(self._library)
         self._solver, self.desk = Solver(bases), Desk(bases)
+        self.live = LiveDesk(bases, lambda: self._library.paths("pads"))
         self._one, self._waiting = asyncio.Lock(), 0
 
     async def form(self, request: Request) -> Response:
@@ -144,6 +146,7 @@ class Studio:
         finally:
             await self._solver.close()
             await self.desk.close()
+            await self.live.close()
 
 
 def application(bases: dict[str, str], first: str, port: int, token: str) -> Application:
@@ -168,6 +171,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/api/solved", studio.solved, methods=["POST"]),
         Route("/api/echo", echo, methods=["POST"]),
         *studio.desk.routes(),
+        *studio.live.routes(),
         Route("/{path:path}", page),
     ]
     handlers = {TooLargeError: _refused, Exception: _failed}

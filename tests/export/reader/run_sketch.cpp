@@ -8,6 +8,7 @@ int analogRead(int) { return std::min(1023, (int)std::lround((0.04f + 0.009f * a
 int main() {
     applied_kPa = 12.0f;
     setup();
+    Serial.sent = '?';
     for (int k = 0; k < 600; k++) {
         /* At the end more than gauge and converter read. */
         applied_kPa = k < 200 ? 12.0f : k < 400 ? 15.0f : 200.0f;

@@ -6,6 +6,7 @@ import importlib.util
 import random
 import shutil
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from pneutouch.catalogue import Library
 from pneutouch.export.reader.reading import Status
 from pneutouch.export.reader.render import MOST_TABLES, arduino_gauge, c_name, reader_files, sketch_note, table_bytes
 from pneutouch.spec.gauge import Gauge
+from pneutouch.workflows.live.protocol import DeviceName, LineReader
 from tests.export.reader.records import record, single
 
 HERE = Path(__file__).parent
@@ -164,7 +166,7 @@ def test_every_file_states_its_difference_from_the_full_model():
 
 @cpp_compiler
 @pytest.mark.parametrize("name", ["honeywell-abp2-5psi", "nxp-mpx5100gp"])
-def test_the_sketch_prints_the_newtons_of_the_python_reader(tmp_path, name):
+def test_the_sketch_sends_the_pressures_and_newtons_of_the_python_reader(tmp_path, name):
     known = {**record(), "gauge": {"name": name, "range_kPa": [-2.0, 34.0]}}
     for path, content in reader_files(known, "dome", gauge(name)).items():
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
@@ -173,17 +175,23 @@ def test_the_sketch_prints_the_newtons_of_the_python_reader(tmp_path, name):
     subprocess.run(
         ["g++", "-Wall", "-Wextra", "-Werror", *places, HERE / "run_sketch.cpp", "-o", "run"], cwd=tmp_path, check=True
     )
-    lines = subprocess.run([tmp_path / "run"], capture_output=True, text=True, check=True).stdout.splitlines()
-    assert lines[0] == "tare: status 0"
-    assert lines[1].startswith("0.000 N") and lines[1].endswith("status 0")
+    sent = subprocess.run([tmp_path / "run"], capture_output=True, check=True).stdout
+    heard = LineReader()
+    name, *samples = heard.feed(sent)
+    assert heard.damaged == 0 and sent.startswith(b"# tare: status 0")
+    assert name == DeviceName(known["design"], 1)
+    assert [one.number for one in samples] == list(range(len(samples))) and len(samples) == 600
+    assert {b.time_ms - a.time_ms for a, b in pairwise(samples)} <= {10.0, 16.0, 17.0}
+    lines = [{one[0]: one[1:] for one in line.split(b"*")[0].decode().split(",")[3:]} for line in sent.splitlines()[2:]]
     reader = module(tmp_path)
-    pressed, beyond = lines[40], lines[-1]
-    printed = float(pressed.split()[0])
-    at = [float(line.split(", ")[1].split()[0]) for line in (lines[1], pressed)]
-    reader.tare([at[0]])
-    assert printed == pytest.approx(reader.read(at[1]).force_N, abs=0.002)
-    assert pressed.endswith("status 0, touched")
-    assert beyond.startswith("nan N") and beyond.split("status ")[1][0] in "34"
+    at, pressed, beyond = samples[0].pressures_kPa[0], 390, -1
+    reader.tare([at])
+    assert at == pytest.approx(12.0, abs=0.1) and lines[0]["r"] == "0.0000" and lines[0]["s"] == "0"
+    assert float(lines[pressed]["r"]) == pytest.approx(
+        reader.read(samples[pressed].pressures_kPa[0]).force_N, abs=0.002
+    )
+    assert lines[pressed]["s"] == "0" and lines[pressed]["c"] == "1"
+    assert lines[beyond]["r"] == "nan" and lines[beyond]["s"] in "34"
 
 
 def test_a_gauge_that_no_sketch_can_read_is_left_out_with_the_reason():

@@ -23,7 +23,7 @@ const owed = new Owed();
 const files = new Versions();
 
 /** By the id of an area, the module that fills it when it is first shown. */
-const MODULES = { target: "./target.js", map: "./map.js", pads: "./pads.js", files: "./files.js", measure: "./measure.js" };
+const MODULES = { target: "./target.js", map: "./map.js", pads: "./pads.js", live: "./live.js", files: "./files.js", measure: "./measure.js" };
 
 /** What the areas are given: the design as it is now and its form, a function that opens another one, and the line of messages. */
 const desk = {
@@ -293,7 +293,7 @@ async function start() {
   listen();
   parts.areas = new Areas(desk, MODULES);
   listenForFiles(desk);
-  if (location.pathname === "/pad") parts.areas.show("pads");
+  if (location.pathname !== "/") parts.areas.show({ "/pad": "pads" }[location.pathname] ?? "live");
   update();
 }
 

@@ -286,7 +286,7 @@ def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFil
     has. Raises InputError if the file or a column is not found."""
     path = folder / run.file
     if not exists(path):
-        raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
+        raise InputError("no such file", file=path, remedy="the campaign names it")
     channels = {"injection": INJECTION, "leak": LEAK, "hand": HAND}.get(run.kind, PLATE)
     columns, written = campaign.reading(run)
     try:

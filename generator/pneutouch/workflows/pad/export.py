@@ -1,6 +1,8 @@
 """Export of a pad's reader, for a microcontroller and Python, and of its model for a simulator."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,13 +26,20 @@ from pneutouch.workflows.pad.touch import Tabulate, calibrated_model, pad_model,
 def write_pad_reader(pad: ResolvedPad, calibration: str | None, out: Path, made_by: Tabulate | None = None) -> Path:
     """Write ``out/<pad>-reader/``: header of C99 and Python module, by a calibration or as predicted at the greatest
     driving pressure of the cell. The same input gives the same bytes. Raises InputError as `calibrated_model`."""
-    model, error = _model(pad, calibration, made_by)
-    table = reader_table(model, noise_kPa(pad), error)
+    model, table = pad_tables(pad, calibration, made_by)
     made_of = digest(json_bytes(table))
     pressure_kPa = round(model.table.driving_pressure / KPA, 6)
     source = PadReaderSource(pad.name, pressure_kPa, calibration, __version__, made_of)
     name = f"{pad.name}-reader"
     return write_folder(out / name, with_manifest(pad_reader_files(table, source), name, {"table": made_of}))
+
+
+def pad_tables(
+    pad: ResolvedPad, calibration: str | None, made_by: Tabulate | None = None
+) -> tuple[PadModel, Mapping[str, Any]]:
+    """The forward model of a pad and the table of its reader, as `write_pad_reader` has them."""
+    model, error = _model(pad, calibration, made_by)
+    return model, reader_table(model, noise_kPa(pad), error)
 
 
 def _model(pad: ResolvedPad, calibration: str | None, made_by: Tabulate | None) -> tuple[PadModel, float]:

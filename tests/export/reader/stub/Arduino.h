@@ -10,8 +10,10 @@ struct Stub {
     void print(int v) { std::printf("%d", v); }
     void println(const char *t) { std::puts(t); }
     void println(int v) { std::printf("%d\n", v); }
-    int available() { return 0; }
-    int read() { return -1; }
+    void write(uint8_t c) { std::putchar(c); }
+    int available() { return sent != 0; }
+    int read() { int c = sent; sent = 0; return c; }
+    int sent = 0;
 };
 static Stub Serial;
 static unsigned long clock_ms = 0;

@@ -1,0 +1,114 @@
+"""The serial port of a live device, read by a thread; a device that was unplugged is opened again when it is back."""
+
+import contextlib
+import threading
+import time
+from typing import Any, Protocol
+
+from pneutouch.errors import InputError
+from pneutouch.workflows.live.session import LiveSession
+
+BAUD = 115_200
+"""Bits a second of the sketch."""
+
+_WAIT_S, _AGAIN_S = 0.02, 0.5
+"""Longest wait for bytes, and time between two attempts to open the port again."""
+
+
+class _Serial(Protocol):
+    in_waiting: int
+
+    def read(self, size: int) -> bytes: ...
+
+    def write(self, data: bytes) -> int: ...
+
+    def close(self) -> None: ...
+
+
+def _pyserial() -> Any:
+    """The package serial. Raises InputError without it."""
+    try:
+        import serial
+        import serial.tools.list_ports
+    except ImportError:
+        remedy = "install it: pip install 'pneutouch[live]'"
+        raise InputError("a live device needs the package pyserial", remedy=remedy) from None
+    return serial
+
+
+def ports() -> list[str]:
+    """Names of the serial ports of this machine that a device is at. Raises InputError without pyserial."""
+    listed = _pyserial().tools.list_ports.comports()
+    return sorted(one.device for one in listed if one.vid is not None or "USB" in one.device or "ACM" in one.device)
+
+
+def open_port(name: str, baud: int = BAUD) -> _Serial:
+    """Open a port for this process alone. Raises InputError for one that is not there, busy, or not to be opened."""
+    serial = _pyserial()
+    try:
+        opened: _Serial = serial.Serial(name, baud, timeout=_WAIT_S, write_timeout=1.0, exclusive=True)
+    except (OSError, ValueError) as error:
+        known = ", ".join([*ports(), "simulated"])
+        words = str(error).lower()
+        problem, use = f"cannot be opened: {error}", "give another"
+        if "lock" in words or "busy" in words:
+            problem, use = "is in use by another program", "close that, or give another"
+        elif "no such file" in words or "could not find" in words:
+            problem = "is not there"
+        raise InputError(problem, key="port", value=name, remedy=f"{use}: {known}") from None
+    return opened
+
+
+class PortThread:
+    """Feeds a session with what comes from a port, until it is closed."""
+
+    def __init__(self, session: LiveSession, name: str, baud: int = BAUD) -> None:
+        """Open the port and begin. Raises InputError as `open_port`."""
+        self._session, self._name, self._baud = session, name, baud
+        self._serial: _Serial | None = open_port(name, baud)
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        self._ask()
+        while not self._ended.is_set():
+            if self._serial is None:
+                self._again()
+                continue
+            try:
+                piece = self._serial.read(max(1, self._serial.in_waiting))
+            except OSError:
+                self._lost()
+                continue
+            if piece:
+                self._session.take(piece)
+
+    def _ask(self) -> None:
+        """Ask the device for its name; one that cannot be written to has none."""
+        with contextlib.suppress(OSError):
+            if self._serial is not None:
+                self._serial.write(b"?")
+
+    def _lost(self) -> None:
+        if self._serial is not None:
+            with contextlib.suppress(OSError):
+                self._serial.close()
+        self._serial = None
+        if not self._ended.is_set():
+            self._session.plugged(False)
+
+    def _again(self) -> None:
+        try:
+            self._serial = open_port(self._name, self._baud)
+        except InputError:
+            time.sleep(_AGAIN_S)
+            return
+        self._session.plugged(True)
+        self._ask()
+
+    def close(self) -> None:
+        """End the thread and close the port."""
+        self._ended.set()
+        self._thread.join()
+        self._lost()

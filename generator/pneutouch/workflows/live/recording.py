@@ -1,0 +1,184 @@
+"""Files of live samples, whole after every second, and their entries in a campaign that `characterize` reads."""
+
+import contextlib
+import math
+import os
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Protocol
+
+from pneutouch.errors import InputError
+from pneutouch.formats import format_of
+from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, campaign_of
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.live.protocol import DeviceSample
+
+FLUSHED_S = 1.0
+"""Seconds after which what was recorded is on the disk."""
+
+RECORDING = ".recording.csv"
+"""Ending of a file while it is recorded; one that stays so was cut off, and is whole up to its last second."""
+
+
+@dataclass
+class Recording:
+    """One run as a CSV file: time, then travel and force if the device sends them, and pressures.
+
+    ``path`` is the file's name when it is closed. ``mark`` is its first line, a comment, or empty.
+    Samples beyond ``most_s`` seconds are left out, and the recording is ``full``.
+    """
+
+    path: Path
+    mark: str = ""
+    most_s: float = math.inf
+    full: bool = False
+    seconds: float = 0.0
+    rows: int = 0
+    _file: IO[str] | None = field(default=None, repr=False)
+    _kept: list[int] = field(default_factory=list, repr=False)
+    _flushed: float = field(default=0.0, repr=False)
+
+    @property
+    def cut_off(self) -> Path:
+        """The file while it is recorded."""
+        return self.path.with_name(self.path.name.removesuffix(".csv") + RECORDING)
+
+    def check(self) -> None:
+        """Raise InputError if a file of that name, or one of a recording that was cut off, is there."""
+        for path in (self.path, self.cut_off):
+            if path.exists():
+                remedy = "a recording is never overwritten: move it away, or record another run"
+                raise InputError("is there already", file=path, remedy=remedy)
+
+    def add(self, sample: DeviceSample, seconds: float) -> None:
+        """Write a sample; ``seconds`` after the one before."""
+        if self._file is None:
+            self._begin(sample)
+        elif self.seconds + seconds > self.most_s + 1e-6:
+            self.full = True
+            return
+        else:
+            self.seconds += seconds
+        assert self._file is not None
+        values = (sample.position_mm, sample.force_N, *sample.pressures_kPa)
+        cells = ["" if math.isnan(values[k]) else f"{values[k]:.6g}" for k in self._kept]
+        self._file.write(f"{self.seconds:.4f},{','.join(cells)}\n")
+        self.rows += 1
+        now = time.monotonic()
+        if now - self._flushed > FLUSHED_S:
+            self.flush()
+
+    def _begin(self, sample: DeviceSample) -> None:
+        names = ["position_mm", "force_N", *pressure_columns(len(sample.pressures_kPa))]
+        beside = [k for k, one in enumerate((sample.position_mm, sample.force_N)) if not math.isnan(one)]
+        self._kept = [*beside, *range(2, len(names))]
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = self.cut_off.open("x", encoding="utf-8")
+        self._file.write(f"{self.mark}\n" if self.mark else "")
+        self._file.write(f"time_s,{','.join(names[k] for k in self._kept)}\n")
+        self._flushed = time.monotonic()
+
+    def flush(self) -> None:
+        """Bring what was recorded onto the disk."""
+        if self._file is not None:
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        self._flushed = time.monotonic()
+
+    def abandon(self) -> None:
+        """Leave the file as it is: it could not be written."""
+        if self._file is not None:
+            with contextlib.suppress(OSError):
+                self._file.close()
+            self._file = None
+
+    def close(self) -> Path | None:
+        """End the recording and give the file its name; None if nothing was recorded."""
+        if self._file is None:
+            return None
+        self.flush()
+        self._file.close()
+        self._file = None
+        self.cut_off.rename(self.path)
+        return self.path
+
+
+def next_file(folder: Path) -> Path:
+    """File of the next recording below a folder."""
+    number, runs = 1, folder / "runs"
+    while any((runs / f"live-{number}{ending}").exists() for ending in (".csv", RECORDING)):
+        number += 1
+    return runs / f"live-{number}.csv"
+
+
+def pressure_columns(cells: int) -> list[str]:
+    """Names of the columns of pressure, in the order of the cells."""
+    return ["pressure_kPa"] if cells == 1 else [f"pressure_{k}_kPa" for k in range(1, cells + 1)]
+
+
+class Recordings(Protocol):
+    """A campaign that recordings are added to."""
+
+    @property
+    def folder(self) -> Path:
+        """Its folder."""
+
+    def check(self) -> None:
+        """Raise InputError if nothing can be added to it."""
+
+    def next_file(self) -> Path:
+        """File of the next recording."""
+
+    def enter(self, file: Path, pressure_kPa: float) -> None:
+        """Enter a recording at a driving pressure."""
+
+
+@dataclass(frozen=True)
+class FreeCampaign:
+    """A campaign of runs that no plan has, in a folder: of ``design`` with ``assignments``, ``simulated`` or not."""
+
+    folder: Path
+    design: str
+    assignments: Sequence[str] = ()
+    simulated: bool = False
+
+    def check(self) -> None:
+        """Raise InputError if the folder holds a campaign of another design, or one that cannot be read."""
+        if not (self.folder / CAMPAIGN).exists():
+            return
+        known, _ = campaign_of(self.folder)
+        is_own = known.design == self.design and list(known.assignments) == list(self.assignments)
+        if not is_own or known.simulated != self.simulated:
+            problem = f"holds runs of {known.design} {' '.join(known.assignments)}".rstrip()
+            problem += ", simulated ones" if known.simulated else ""
+            raise InputError(problem, file=self.folder / CAMPAIGN, remedy="record into another folder")
+
+    def next_file(self) -> Path:
+        """File of the next run."""
+        return next_file(self.folder)
+
+    def enter(self, file: Path, pressure_kPa: float) -> None:
+        """Write the entry of a run to the end of the campaign file, which is made if there is none; what stands in it
+        stays as it is. The kind of the run is left out: it is recognised."""
+        path, name = self.folder / CAMPAIGN, file.relative_to(self.folder).as_posix()
+        before = campaign_of(self.folder)[0].runs if path.exists() else []
+        here_kPa = round(max(pressure_kPa, 0.0), 2)
+        run = CampaignRun(
+            file=name,
+            sensor="live",
+            driving_pressure_kPa=here_kPa,
+            run=1 + sum(one.driving_pressure_kPa == here_kPa and one.sensor == "live" for one in before),
+        )
+        entry = run.model_dump(mode="python", exclude_none=True, exclude={"kind", "age_days", "resin"})
+        head = {
+            "campaign_format": format_of("campaign"),
+            "title": f"Live recordings of {self.design}"[:120],
+            "design": self.design,
+            "assignments": list(self.assignments),
+            "simulated": self.simulated,
+        }
+        text = "" if path.exists() else toml_text(head)
+        with path.open("a", encoding="utf-8") as campaign:
+            campaign.write(f"{text}\n{toml_text({'runs': [entry]})}")
