@@ -1,4 +1,4 @@
-"""Charts of the paper's Figures 3(a) to (c), 5(a), 6(d) to (g) and 7(a), from docs/background/claims.json."""
+"""Charts of the paper's Figures 3(a) to (c), 5(a), 6(d) to (g) and 7(a), and of its claim on several sensitivities."""
 
 from __future__ import annotations
 
@@ -113,4 +113,44 @@ def _sensitivities(ax: Axes, found: dict[str, Any]) -> None:
     ax.set_title("Figure 6(g)", fontsize=7.5, loc="left")
 
 
-CHARTS: dict[str, Callable[[], str]] = {"paper-theory": paper_theory, "paper-solid": paper_solid}
+_SETS = {
+    "0": (MUTED, "-"),
+    "12": (INK, "--"),
+    "22": (MUTED, ":"),
+    "0 + 22": (INK, "-"),
+    "0 + 12 + 22": (ACCENT, "-"),
+}
+"""Tone and line of each set of driving pressures."""
+
+
+def discrimination() -> str:
+    """Objects and forces that readings at one, two and three driving pressures leave possible, and the mean region."""
+    found = stored("discrimination")
+    with figure(178, 70) as drawn:
+        left, right = drawn.subplots(1, 2)
+        for label, (tone, dashes) in _SETS.items():
+            region = {key: np.array(value) for key, value in found["regions"][label].items() if key != "share"}
+            across = np.concatenate([region["low"], region["high"][::-1], region["low"][:1]])
+            up = np.concatenate([region["curvature"], region["curvature"][::-1], region["curvature"][:1]])
+            left.plot(across, up, color=tone, ls=dashes, lw=1.0, label=f"{label} kPa")
+        tightest = found["regions"]["0 + 12 + 22"]
+        left.fill_betweenx(tightest["curvature"], tightest["low"], tightest["high"], color=ACCENT, alpha=0.5, lw=0)
+        left.plot(1.3, 1 / 8, "+", color=INK, ms=7)
+        left.set(xlabel="contact force  (N)", ylabel="curvature of the object  (1/mm)", ylim=(0, None))
+        left.legend(fontsize=5.5)
+        shares = [100 * plan["area_ratio"] for plan in found["plans"]]
+        right.plot(range(1, len(shares) + 1), shares, color=INK, marker=MARKERS[0], ms=4, lw=1.0)
+        for k, (share, plan) in enumerate(zip(shares, found["plans"], strict=True), start=1):
+            words = ", ".join(f"{one:g}" for one in plan["driving_pressures_kPa"])
+            place = {"xytext": (5, 5), "textcoords": "offset points", "fontsize": 6}
+            right.annotate(f"{share:.0f} %: {words} kPa", (k, share), **place)
+        right.set(xlabel="number of readings", ylabel="mean 95 % region  (% of the best single)")
+        right.set(xlim=(0.8, len(shares) + 0.9), ylim=(0, 112), xticks=range(1, len(shares) + 1))
+        return svg(drawn)
+
+
+CHARTS: dict[str, Callable[[], str]] = {
+    "paper-theory": paper_theory,
+    "paper-solid": paper_solid,
+    "discrimination": discrimination,
+}

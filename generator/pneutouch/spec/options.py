@@ -249,3 +249,26 @@ class FitOptions(Options):
         if self.bonded and self.puck_mm is None:
             raise FieldsError("is of a puck; give `puck_mm` too", "bonded")
         return self
+
+
+class DiscriminationOptions(Options):
+    """Options of ``discriminate``."""
+
+    driving_pressures_kPa: Annotated[list[float], _PRESSURES] = option(
+        [0.0, 12.0, 22.0], "Driving pressures of the readings, kPa.", unit="kPa", flag="pressures", metavar="KPA,KPA"
+    )
+    classes_mm: Annotated[list[float], AfterValidator(list_check(0.05, 1000.0, "mm"))] = option(
+        [20.0, 8.0], "Radii of balls to be told apart, and from a plate, mm.", unit="mm", flag="balls", metavar="MM,MM"
+    )
+    least_radius_mm: float = option(6.0, "Radius of the smallest ball that may press, mm.", unit="mm", low=1, high=1000)
+    error_percent: float = option(
+        1.0, "Error of a rise that readings do not share, percent of it: our choice.", unit="%", low=0.01, high=50
+    )
+    noise_kPa: float | None = option(
+        None,
+        "Standard deviation of a rise that is read, kPa; left out: that of two readings of the design's gauge.",
+        unit="kPa",
+        low=1e-6,
+        high=10,
+    )
+    plan: int | None = option(None, "Choose so many driving pressures that tell most.", low=1, high=4, metavar="N")

@@ -1,0 +1,173 @@
+"""Objects and forces by several driving pressures: a sensor whose posterior is known, coverage, and the paper's sensor."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.spec.options import DiscriminationOptions
+from pneutouch.units import KPA
+from pneutouch.workflows.discriminate import (
+    ObjectTable,
+    Posterior,
+    discriminate,
+    interval,
+    object_table,
+    region,
+    weights_of,
+)
+from tests.running import in_process
+
+SLOPES = np.array([0.2, 3.0, 6.0])
+"""Slopes of the logarithm of the rise over the curvature, mm, at each pressure of `exponential`."""
+
+
+def exponential(rows=201, columns=801) -> ObjectTable:
+    """A sensor whose rise is F exp(b kappa): with relative errors alone the posterior is a Gaussian one."""
+    curvatures, forces = np.linspace(0.0, 0.2, rows), np.geomspace(0.2, 5.0, columns)
+    rise = forces * np.exp(SLOPES[:, None, None] * curvatures[:, None])
+    return ObjectTable(np.array([0.0, 10.0, 20.0]), curvatures, forces, 1e-3 * rise)
+
+
+@pytest.mark.parametrize("chosen", [(0, 1, 2), (0, 2)])
+def test_region_and_intervals_are_those_of_the_gaussian_posterior(chosen):
+    table, error = exponential(), 0.02
+    weights = Posterior(table, 0.0, error).of(table.at(0.1, 1.0), chosen)
+    slopes = SLOPES[list(chosen)]
+    fisher = np.array([[len(slopes), slopes.sum()], [slopes.sum(), (slopes**2).sum()]]) / error**2
+    covariance = np.linalg.inv(fisher)
+    # Errors count the rise of the node: that moves the mode by error squared, and the width by less than 3 %.
+    low, high = interval(np.log(table.forces), weights.sum(axis=0))
+    assert high - low == pytest.approx(2 * 1.96 * math.sqrt(covariance[0, 0]), rel=0.03)
+    low, high = interval(table.curvatures, weights.sum(axis=1))
+    assert high - low == pytest.approx(2 * 1.96 * math.sqrt(covariance[1, 1]), rel=0.03)
+    whole = 0.2 * math.log(25.0)
+    ellipse = math.pi * -2.0 * math.log(0.05) * math.sqrt(np.linalg.det(covariance))
+    assert region(weights) * whole == pytest.approx(ellipse, rel=0.03)
+
+
+def test_one_reading_tells_a_line_of_objects_and_forces():
+    table, error = exponential(), 0.02
+    weights = Posterior(table, 0.0, error).of(table.at(0.1, 1.0), (2,))
+    # Whatever the curvature, ln F + b kappa is known.
+    low, high = interval(table.curvatures, weights.sum(axis=1))
+    assert high - low == pytest.approx(0.95 * 0.2, rel=0.02)
+    logs = np.log(table.forces)[None] + SLOPES[2] * table.curvatures[:, None]
+    mean = (weights * logs).sum()
+    assert math.sqrt((weights * (logs - mean) ** 2).sum()) == pytest.approx(error, rel=0.05)
+
+
+def test_a_region_of_one_node_is_a_part_of_it():
+    weights = np.zeros((4, 5))
+    weights[1, 2] = 1.0
+    assert region(weights) == pytest.approx(0.95 / 20)
+    assert region(np.full((4, 5), 0.05)) == pytest.approx(0.95)
+
+
+def covered(table, noise, error, count, seed=1):
+    """Shares of random objects whose curvature and force lie in their intervals."""
+    posterior, random = Posterior(table, noise, error), np.random.default_rng(seed)
+    bends, logs = table.curvatures, np.log(table.forces)
+    inside, tried = np.zeros(2), 0
+    while tried < count:
+        bend, log = random.uniform(bends[0], bends[-1]), random.uniform(logs[0], logs[-1])
+        if log > math.log(table.reach(bend)):
+            continue
+        tried += 1
+        (reading,) = posterior.drawn(table.at(bend, math.exp(log)), 1, random)
+        weights = posterior.of(reading, range(len(reading)))
+        for k, (true, values, axis) in enumerate(((bend, bends, 1), (log, logs, 0))):
+            low, high = interval(values, weights.sum(axis=axis))
+            inside[k] += low <= true <= high
+    return inside / count
+
+
+@pytest.fixture(scope="module")
+def paper():
+    """The paper's sensor at its driving pressures."""
+    return object_table("paper-dome", None, [0.0, 12.0, 22.0], 6.0, (61, 240))
+
+
+def test_intervals_hold_the_truth(paper):
+    shares = covered(paper, 0.02 * KPA, 0.02, 250)
+    # 95 % of 250 within three standard deviations.
+    assert (np.abs(shares - 0.95) < 3 * math.sqrt(0.95 * 0.05 / 250)).all(), shares
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("noise_kPa", "error"), [(0.02, 0.01), (0.1, 0.02), (0.02, 0.05)])
+def test_intervals_hold_the_truth_in_93_to_97_percent(noise_kPa, error):
+    table = object_table("paper-dome", None, [0.0, 12.0, 22.0], 6.0)
+    shares = covered(table, noise_kPa * KPA, error, 1000)
+    assert (shares > 0.93).all() and (shares < 0.975).all(), shares
+
+
+def test_between_its_nodes_the_table_is_a_press(paper):
+    """Curvature and forces between nodes, against a table that has that curvature as its last node."""
+    radius = 1.0 / (0.75 * paper.curvatures[-1])
+    other = object_table("paper-dome", None, [0.0, 12.0, 22.0], radius, (7, 240))
+    for force in (1.0, 1.5, 2.0):
+        # 0.75 of the greatest curvature lies between two of seven nodes.
+        assert paper.at(1.0 / radius, force) == pytest.approx(other.at(1.0 / radius, force), rel=0.005)
+
+
+def test_a_tenser_wall_feels_the_radius_less(paper):
+    flat, round_ = paper.at(0.0, 1.5), paper.at(1.0 / 8.0, 1.5)
+    ratio = round_ / flat
+    assert (np.diff(ratio) < 0.0).all() and ratio[0] > 1.4 and 1.0 < ratio[-1] < 1.15
+
+
+def test_three_pressures_tell_what_one_cannot():
+    record = discriminate("paper-dome")
+    # At least halved, as the paper's claim needs; the page has the figure.
+    assert record.area_ratio < 0.5
+    assert all(one.area_ratio <= 1.0 + 1e-9 and one.force_ratio <= 1.0 + 1e-9 for one in record.told)
+    several, single = (np.trace(np.array(one)) / 3.0 for one in (record.confusion, record.confusion_single))
+    assert several > 0.97 and single < 0.6
+    assert np.array(record.confusion).sum(axis=1) == pytest.approx([1.0, 1.0, 1.0])
+    for one in record.told:
+        low, high = one.curvature_interval_per_mm
+        assert low <= (1.0 / one.ball_radius_mm if one.ball_radius_mm else 0.0) < high
+
+
+def test_noise_and_errors_widen_what_is_told():
+    quiet = discriminate("paper-dome", None, DiscriminationOptions(noise_kPa=0.01, classes_mm=[8.0]))
+    loud = discriminate("paper-dome", None, DiscriminationOptions(noise_kPa=0.5, error_percent=3.0, classes_mm=[8.0]))
+    for one, other in zip(quiet.told, loud.told, strict=True):
+        assert other.force_half_width_percent > one.force_half_width_percent
+
+
+@pytest.mark.slow
+def test_a_plan_is_better_than_any_single_pressure_and_none_of_its_size_is_better():
+    options = DiscriminationOptions(driving_pressures_kPa=[0.0, 22.0], classes_mm=[8.0], plan=2)
+    record = discriminate("paper-dome", None, options)
+    assert record.plan.driving_pressures_kPa == (0.0, 22.0) and record.plan.area_ratio < 0.3
+    three = discriminate("paper-dome", None, options.model_copy(update={"plan": 3}))
+    assert three.plan.area_ratio < record.plan.area_ratio
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [({"driving_pressures_kPa": [12.0]}, "driving_pressures_kPa"), ({"classes_mm": [8.0, 2.0]}, "classes_mm")],
+)
+def test_what_cannot_be_told_is_refused_with_its_key(change, key):
+    with pytest.raises(InputError) as error:
+        discriminate("paper-dome", None, DiscriminationOptions(**change))
+    assert error.value.key == key
+
+
+def test_the_command_prints_what_is_told(tmp_path):
+    done = in_process(["discriminate", "paper-dome", "--balls", "8", "--json"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert record["classes"] == ["plate", "ball 8 mm"] and len(record["told"]) == 6
+    assert in_process(["discriminate", "paper-dome", "--pressures", "5"], tmp_path).returncode == 2
+
+
+def test_weights_of_nodes_beyond_the_range_are_nothing():
+    logs = np.array([[[0.0, math.nan], [math.log(3.0), -math.inf]]])
+    assert weights_of(logs, (0,)) == pytest.approx(np.array([[0.25, 0.0], [0.75, 0.0]]))
