@@ -101,9 +101,9 @@ pythons: $(VENV)/.run
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
-	    --extra cad --extra studio pyproject.toml requirements-build.in --output-file requirements.lock
+	    --extra cad --extra live --extra studio pyproject.toml requirements-build.in --output-file requirements.lock
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
-	    --extra cad --extra studio --group dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
+	    --extra cad --extra live --extra studio --group dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -25,12 +25,13 @@ DRAWN = 1000
 def main() -> None:
     """Measure and store."""
     table = object_table("paper-dome", None, PRESSURES, LEAST)
-    record = discriminate("paper-dome", None, DiscriminationOptions())
+    asked = DiscriminationOptions(driving_pressures_kPa=list(PRESSURES))
+    record = discriminate("paper-dome", None, asked)
     posterior = Posterior(table, record.noise_kPa * KPA, record.error_percent / 100.0)
     logs = posterior.logs(table.at(1.0 / EXAMPLE[0], EXAMPLE[1]))
     sets = [(0,), (1,), (2,), (0, 2), (0, 1, 2)]
     regions = {" + ".join(f"{PRESSURES[k]:g}" for k in one): outline(table, weights_of(logs, one)) for one in sets}
-    plans = [discriminate("paper-dome", None, DiscriminationOptions(plan=n)).plan for n in (1, 2, 3)]
+    plans = [discriminate("paper-dome", None, asked.model_copy(update={"plan": n})).plan for n in (1, 2, 3)]
     shares = covered(posterior)
     store("discrimination", {"told": plain(record), "regions": regions, "plans": plain(plans), "covered": shares})
 

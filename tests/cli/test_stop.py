@@ -45,6 +45,7 @@ LINES = [
     "characterize campaign --out made",
     "calibrate campaign --sensor TangoPlus-1 --fit modulus --save mine --out made",
     "scan texture-specimen --design paper-dome --out made",
+    "discriminate paper-dome",
 ]
 
 
@@ -180,8 +181,8 @@ def test_a_stop_at_any_moment_leaves_all_or_nothing(line, campaign, tmp_path):
 
 def test_every_command_is_stopped():
     commands = [name for group in COMMANDS.values() for name in group]
-    # The studio runs until it is stopped: tests/studio/test_serve.py.
-    assert {line.split()[0] for line in LINES} == set(commands) - {"studio"}
+    # They run until they are stopped: tests/studio/test_serve.py, tests/cli/test_live.py.
+    assert {line.split()[0] for line in LINES} == set(commands) - {"studio", "live"}
 
 
 def test_a_stop_is_held_back_while_files_move(tmp_path):

@@ -65,8 +65,8 @@ def test_no_damage_ends_in_an_internal_fault_or_takes_too_much(part, base, tmp_p
 
 
 def test_every_command_is_among_the_cases():
-    # The studio runs until it is stopped; what is sent to it: tests/studio/test_attacks.py.
-    assert set(LINES) == set(options_of()) - {"studio"}
+    # They run until they are stopped; what is sent to the studio: tests/studio/test_attacks.py, to live: tests/workflows/live.
+    assert set(LINES) == set(options_of()) - {"studio", "live"}
     assert all(maker is not None for maker in FILES.values()) and len(FILES) >= 20
 
 

@@ -46,9 +46,8 @@ def discrimination_text(record: DiscriminationRecord) -> str:
         table_text(_HEAD, rows),
         "",
         "95 % intervals by all readings. Region and force: the area of the 95 % region of force and curvature, and the",
-        "width of the interval of the force, over those by the best single reading.",
-        f"In the mean the region is {100.0 * record.area_ratio:.0f} % of that by the best single pressure, "
-        f"{record.best_single_kPa:g} kPa.",
+        f"width of the interval of the force, over those by the best single pressure, {record.best_single_kPa:g} kPa.",
+        f"In the mean the region is {100.0 * record.area_ratio:.0f} % of that.",
         "",
         "told as, percent: by all readings, and by the best single one",
         table_text(["", *record.classes, *record.classes], _confused(record)),

@@ -72,16 +72,19 @@ def live(
     with bar("tabulating the sensor"):
         sensor = live_of_pad(design, set_, calibration) if is_pad(design) else live_sensor(design, fields)
     with live_run(sensor, port, baud, pressure_kPa=pressure_kPa) as running, _view(json=json) as show:
-        while planned is not None and chosen is not None:
-            notify(f"run {chosen.number}: {chosen.kind} of {chosen.sensor} at {chosen.driving_pressure_kPa:g} kPa")
-            running.record_run(planned, chosen)
-            complete = _watch(running, show, seconds)
-            chosen = planned.open[0] if all_ and complete and planned.open else None
-        if free is not None:
-            running.record_free(free)
-        if planned is None:
-            _watch(running, show, seconds)
-        running.stop()
+        try:
+            while planned is not None and chosen is not None:
+                notify(f"run {chosen.number}: {chosen.kind} of {chosen.sensor} at {chosen.driving_pressure_kPa:g} kPa")
+                running.record_run(planned, chosen)
+                complete = _watch(running, show, seconds)
+                chosen = planned.open[0] if all_ and complete and planned.open else None
+            if free is not None:
+                running.record_free(free)
+            if planned is None:
+                _watch(running, show, seconds)
+        finally:
+            if running.stop() is not None:
+                notify(f"note: {running.session.state.said[-1]}")
         known = running.record()
     print_answer(known, lambda one: filled_text("live.txt.j2", record=one), json=json)
     _report_next(planned, record, [design, "--port", port, *set_words(set_, calibration)], json=json)

@@ -19,9 +19,9 @@ class ToldObject:
     curvature_interval_per_mm: tuple[float, float]
     """Interval of the curvature, by all readings."""
     area_ratio: float
-    """Area of the 95 % region of force and curvature by all readings, over that by the best single one."""
+    """Area of the 95 % region of force and curvature by all readings, over that by the best single pressure of all."""
     force_ratio: float
-    """Width of the interval of the force by all readings, over that by the best single one."""
+    """Width of the interval of the force by all readings, over that by the best single pressure of all."""
     correlation: float
     """Correlation of the logarithm of the force and the curvature, by all readings; near 1 or -1: confounded."""
 

@@ -255,14 +255,18 @@ class DiscriminationOptions(Options):
     """Options of ``discriminate``."""
 
     driving_pressures_kPa: Annotated[list[float], _PRESSURES] = option(
-        [0.0, 12.0, 22.0], "Driving pressures of the readings, kPa.", unit="kPa", flag="pressures", metavar="KPA,KPA"
+        [],
+        "Driving pressures of the readings, kPa; left out: the design's.",
+        unit="kPa",
+        flag="pressures",
+        metavar="KPA,KPA",
     )
     classes_mm: Annotated[list[float], AfterValidator(list_check(0.05, 1000.0, "mm"))] = option(
         [20.0, 8.0], "Radii of balls to be told apart, and from a plate, mm.", unit="mm", flag="balls", metavar="MM,MM"
     )
     least_radius_mm: float = option(6.0, "Radius of the smallest ball that may press, mm.", unit="mm", low=1, high=1000)
     error_percent: float = option(
-        1.0, "Error of a rise that readings do not share, percent of it: our choice.", unit="%", low=0.01, high=50
+        1.0, "Error of a rise that readings do not share, percent of it: our choice.", unit="%", low=0.5, high=50
     )
     noise_kPa: float | None = option(
         None,

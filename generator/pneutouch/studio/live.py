@@ -28,6 +28,9 @@ _KEPT = 512
 _LAST_SECONDS = 5.0
 """Seconds that a recording has to end."""
 
+_ELSEWHERE = b'{"elsewhere": true}\n'
+"""Last frame of a stream in whose place another page watches."""
+
 _KEYS = {"question", "pad", "port", "baud"}
 
 COMMANDS = ("tare", "record", "plan", "stop")
@@ -39,9 +42,9 @@ class LiveDesk:
     def __init__(self, bases: Mapping[str, str], pads: Callable[[], Container[str]]) -> None:
         self._bases, self._pads = bases, pads
         self._process: asyncio.subprocess.Process | None = None
-        self._frames: asyncio.Queue[bytes] = asyncio.Queue(_KEPT)
+        self._frames: asyncio.Queue[bytes] | None = None
+        self._fault = b""
         self._watch: asyncio.Task[None] | None = None
-        self._streams = 0
         self._one = asyncio.Lock()
 
     def routes(self) -> list[Route]:
@@ -104,22 +107,25 @@ class LiveDesk:
 
     async def stream(self, request: Request) -> Response:
         """Frames of the device as they come, a JSON document a line, from the samples that are kept on."""
-        self._streams += 1
-        while not self._frames.empty():
-            self._frames.get_nowait()
+        self._put(_ELSEWHERE)
+        self._put(b"")
+        self._frames = frames = asyncio.Queue[bytes](_KEPT)
+        if self._process is None:
+            # It failed before this stream was opened.
+            self._put(self._fault)
+            self._put(b"")
         await self._send({"do": "again"})
-        return StreamingResponse(self._passed(self._streams), media_type="application/x-ndjson")
+        return StreamingResponse(_passed(frames), media_type="application/x-ndjson")
 
-    async def _passed(self, number: int) -> AsyncIterator[bytes]:
-        """Frames for the newest stream, until another one is opened or the device has ended."""
-        while number == self._streams:
-            frame = await self._frames.get()
-            if not frame:
-                return
-            yield frame
+    def _put(self, frame: bytes) -> None:
+        """Give a frame to the stream that is open; the oldest that waits is left out where there are too many."""
+        if self._frames is not None:
+            if self._frames.full():
+                self._frames.get_nowait()
+            self._frames.put_nowait(frame)
 
     async def _start(self, request: Mapping[str, Any]) -> None:
-        self._frames = asyncio.Queue(_KEPT)
+        self._fault = b""
         self._process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-m",
@@ -132,7 +138,7 @@ class LiveDesk:
             start_new_session=True,
         )
         await self._send(request)
-        self._watch = asyncio.create_task(self._read(self._process, self._frames))
+        self._watch = asyncio.create_task(self._read(self._process))
 
     async def _send(self, line: Mapping[str, Any]) -> None:
         if self._process is not None and self._process.stdin is not None:
@@ -140,18 +146,18 @@ class LiveDesk:
                 self._process.stdin.write(json.dumps(line).encode() + b"\n")
                 await self._process.stdin.drain()
 
-    async def _read(self, process: asyncio.subprocess.Process, frames: asyncio.Queue[bytes]) -> None:
-        """Keep the newest frames of a process; an empty one is its end."""
+    async def _read(self, process: asyncio.subprocess.Process) -> None:
+        """Pass on the frames of a process; an empty one is its end."""
         assert process.stdout is not None
         line = b"-"
         while line:
             line = await process.stdout.readline()
-            if frames.full():
-                frames.get_nowait()
-            frames.put_nowait(line)
+            if line.startswith(b'{"fault"'):
+                self._fault = line
+            if not line and self._process is process:
+                self._process = None
+            self._put(line)
         await process.wait()
-        if self._process is process:
-            self._process = None
 
     async def _end(self) -> None:
         process, self._process = self._process, None
@@ -168,8 +174,14 @@ class LiveDesk:
 
     async def close(self) -> None:
         """End the device with the studio, and the streams with it."""
-        self._streams += 1
         await self._end()
+        self._put(b"")
+
+
+async def _passed(frames: asyncio.Queue[bytes]) -> AsyncIterator[bytes]:
+    """Frames until the end of the device, or until another page watches."""
+    while frame := await frames.get():
+        yield frame
 
 
 def _baud(given: Any) -> int:

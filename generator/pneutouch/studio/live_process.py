@@ -51,11 +51,13 @@ class _Watched:
                     self._do(command)
                 except PneutouchError as error:
                     self._write({"fault": _fault(error)})
+                except OSError as error:
+                    self._write({"fault": _fault(_of_system(error))})
             try:
                 self._running.advance()
                 self._running.check_link()
             except OSError as error:
-                self._write({"fault": _fault(InputError(error.strerror or str(error), file=error.filename))})
+                self._write({"fault": _fault(_of_system(error))})
             self._frame()
 
     def _do(self, command: Mapping[str, Any]) -> None:
@@ -107,6 +109,11 @@ class _Watched:
     def _write(self, line: Mapping[str, Any]) -> None:
         self._out.write(json.dumps(plain(line)).encode() + b"\n")
         self._out.flush()
+
+
+def _of_system(error: OSError) -> InputError:
+    """An error of the system in its words."""
+    return InputError(error.strerror or str(error), file=error.filename)
 
 
 def _fault(error: Exception) -> PageFault:

@@ -10,28 +10,28 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import DesignSource, load_scene
+from pneutouch.catalogue import DesignSource, ResolvedDesign, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.reader import curve_of
+from pneutouch.evaluation.resins import tested_kPa
 from pneutouch.mechanics.gauge_reading import PAPER_NOISE
 from pneutouch.results.discrimination import DiscriminationRecord, PlannedReading, ToldObject
 from pneutouch.spec.options import DiscriminationOptions
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
-_NODES, _GRID, _COARSE = 7, (121, 720), (81, 240)
+_NODES, _GRID, _COARSE = 7, (121, 1200), (81, 480)
 """Curvatures at which the sensor is pressed; curvatures and forces of the grid of a posterior, and of that by which
 sets of pressures are compared. Rises between nodes are within 0.5 % of those of a press (tests/workflows)."""
 
 _LEAST = 0.03
-"""Least force of the grid over the greatest: our choice."""
+"""Least force of the grid, over the greatest that every reading of the smallest ball holds: our choice."""
 
 _SHARES = (0.1, 0.3, 0.7)
 """Forces that are told, over the greatest that an object's readings hold: our choice."""
@@ -62,7 +62,9 @@ class ObjectTable:
     rise: Array
 
     def at(self, curvature: float, force: float) -> Array:
-        """Rises (k,) at a curvature and a force; NaN beyond the range."""
+        """Rises (k,) at a curvature and a force; NaN beyond the range and below the forces of the table."""
+        if force < self.forces[0] * (1.0 - 1e-9):
+            return np.full(len(self.pressures_kPa), np.nan)
         row = np.interp(curvature, self.curvatures, np.arange(len(self.curvatures)))
         column = np.interp(math.log(force), np.log(self.forces), np.arange(len(self.forces)))
         i, j = min(int(row), len(self.curvatures) - 2), min(int(column), len(self.forces) - 2)
@@ -91,8 +93,8 @@ def object_table(
 
     nodes = np.linspace(0.0, 1.0 / least_radius, _NODES)
     curves = [_pressed(design, changes, pressures_kPa, float(node)) for node in nodes]
-    greatest = min(float(force[-1]) for force, _ in curves[0])
-    forces = np.geomspace(_LEAST * greatest, greatest, grid[1])
+    greatest, least = (min(float(force[-1]) for force, _ in states) for states in (curves[0], curves[-1]))
+    forces = np.geomspace(_LEAST * min(least, greatest), greatest, grid[1])
     known = np.full((len(pressures_kPa), _NODES, grid[1]), np.nan)
     for (i, states), k in itertools.product(enumerate(curves), range(len(pressures_kPa))):
         force, rise = states[k]
@@ -102,7 +104,9 @@ def object_table(
     rises = np.full((len(pressures_kPa), *grid), np.nan)
     for k, j in itertools.product(range(len(pressures_kPa)), range(grid[1])):
         # A ball's range ends at a smaller force than a plate's: what is known are the first nodes.
-        count = int(np.isfinite(known[k, :, j]).sum())
+        count = _NODES if np.isfinite(known[k, :, j]).all() else int(np.isfinite(known[k, :, j]).argmin())
+        if count == 0:
+            continue
         inside = fine <= nodes[count - 1] * (1.0 + 1e-9)
         row = PchipInterpolator(nodes[:count], known[k, :count, j])(fine[inside]) if count > 1 else known[k, :1, j]
         rises[k, inside, j] = row
@@ -116,7 +120,9 @@ def _pressed(
     ball = {"contact.object": "ball", "contact.ball_radius_mm": 1.0 / curvature} if curvature else {}
     own = {"contact.object": "plate", **ball, "pneumatics.driving_pressures_kPa": sorted(pressures_kPa)}
     evaluation = evaluate(design, {**(changes or {}), **own}, model="solid")
-    return [curve_of(state, evaluation.sensor)[1:3] for state in evaluation.prediction.states]
+    curves = [curve_of(state, evaluation.sensor) for state in evaluation.prediction.states]
+    rising = [np.r_[True, np.diff(curve.force) > 0.0] for curve in curves]
+    return [(curve.force[keep], curve.rise[keep]) for curve, keep in zip(curves, rising, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -127,6 +133,11 @@ class Posterior:
     noise: float
     error: float
 
+    @property
+    def errors(self) -> tuple[float, float]:
+        """Noise and relative error."""
+        return self.noise, self.error
+
     @cached_property
     def _deviation(self) -> Array:
         return np.asarray(np.hypot(self.noise, self.error * self.table.rise))
@@ -135,11 +146,10 @@ class Posterior:
     def _log_deviation(self) -> Array:
         return np.log(self._deviation)
 
-    def logs(self, readings: Array, rows: Any = slice(None)) -> Array:
-        """Logarithms of the likelihood of each reading (k,), MPa, at the nodes of some ``rows`` (k, m, n)."""
-        at = (slice(None), rows)
-        misfit = (np.asarray(readings)[:, None, None] - self.table.rise[at]) / self._deviation[at]
-        return np.asarray(-0.5 * misfit**2 - self._log_deviation[at])
+    def logs(self, readings: Array) -> Array:
+        """Logarithms of the likelihood of each reading (k,), MPa, at the nodes (k, m, n)."""
+        misfit = (np.asarray(readings)[:, None, None] - self.table.rise) / self._deviation
+        return np.asarray(-0.5 * misfit**2 - self._log_deviation)
 
     def of(self, readings: Array, chosen: Sequence[int]) -> Array:
         """The posterior of readings (k,), MPa, of which those numbered ``chosen`` count; all curvatures and logarithms
@@ -186,21 +196,19 @@ def discriminate(
     options: DiscriminationOptions = DiscriminationOptions(),  # noqa: B008 - immutable
 ) -> DiscriminationRecord:
     """State how well readings at the driving pressures of ``options`` tell objects and forces. Raises InputError."""
-    _check(options)
     scene = load_scene(design, changes)
+    _check(options)
     scatter = reading_of(scene).scatter
     noise = options.noise_kPa * KPA if options.noise_kPa is not None else math.sqrt(2.0) * (scatter or PAPER_NOISE)
-    asked_kPa = sorted(set(options.driving_pressures_kPa))
+    asked_kPa = _pressures_kPa(options, scene)
     table = object_table(design, changes, asked_kPa, options.least_radius_mm)
     posterior, readings = Posterior(table, noise, options.error_percent / 100.0), range(len(asked_kPa))
-    cases = [(one, share * table.reach(one)) for one in _curvatures(options) for share in _SHARES]
+    cases = _cases(table, options)
     areas = _areas(posterior, cases, [*((k,) for k in readings), tuple(readings)])
     single = int(np.log(areas[:, :-1]).mean(axis=0).argmin())
-    told = tuple(
-        _told(posterior, one, force, float(row[-1] / row[:-1].min()))
-        for (one, force), row in zip(cases, areas, strict=True)
-    )
-    plan = None if options.plan is None else _planned(design, changes, options, noise)
+    pairs = zip(cases, areas, strict=True)
+    told = tuple(_told(posterior, case, float(row[-1] / row[single]), single) for case, row in pairs)
+    plan = None if options.plan is None else _planned(design, changes, options, noise, asked_kPa)
     return DiscriminationRecord(
         design=scene.name,
         driving_pressures_kPa=tuple(asked_kPa),
@@ -229,12 +237,18 @@ _ASSUMPTIONS = {
 }
 
 
-def _check(options: DiscriminationOptions) -> None:
-    """Raise InputError for what cannot be told."""
-    if len(set(options.driving_pressures_kPa)) < 2:
+def _pressures_kPa(options: DiscriminationOptions, scene: ResolvedDesign) -> list[float]:
+    """Driving pressures of the readings, ascending: those asked, else the design's. Raises InputError for one alone."""
+    given_kPa = options.driving_pressures_kPa or tested_kPa(scene)
+    if len(set(given_kPa)) < 2:
         problem = "one driving pressure tells a curve of radii and forces, not both"
-        remedy = "give two or more, such as 0,12,22; three tell them more surely"
-        raise InputError(problem, key="driving_pressures_kPa", value=options.driving_pressures_kPa, remedy=remedy)
+        remedy = "give two or more, such as 0,12,22; two far apart tell most"
+        raise InputError(problem, key="driving_pressures_kPa", value=given_kPa, remedy=remedy)
+    return sorted(set(given_kPa))
+
+
+def _check(options: DiscriminationOptions) -> None:
+    """Raise InputError for objects that cannot be told."""
     for radius in options.classes_mm:
         if radius < options.least_radius_mm:
             problem = f"is below the least radius, {options.least_radius_mm:g} mm"
@@ -244,6 +258,17 @@ def _check(options: DiscriminationOptions) -> None:
 def _curvatures(options: DiscriminationOptions) -> list[float]:
     """Curvatures of the classes, a plate's first."""
     return [0.0, *sorted(1.0 / radius for radius in options.classes_mm)]
+
+
+def _cases(table: ObjectTable, options: DiscriminationOptions) -> list[tuple[float, float]]:
+    """Curvatures of the classes, each with forces over the range that its readings hold. Raises InputError where there
+    is none."""
+    reaches = [(one, table.reach(one)) for one in _curvatures(options)]
+    for one, reach in reaches:
+        if not all(np.isfinite(table.at(one, share * reach)).all() for share in _SHARES):
+            problem = f"a {_words(one)} has no range that all driving pressures share"
+            raise InputError(problem, key="classes_mm", remedy="give larger balls, or other driving pressures")
+    return [(one, share * reach) for one, reach in reaches for share in _SHARES]
 
 
 def _words(curvature: float) -> str:
@@ -257,13 +282,12 @@ def _areas(posterior: Posterior, cases: Sequence[tuple[float, float]], sets: Seq
     return np.array([[region(weights_of(logs, chosen)) for chosen in sets] for logs in each])
 
 
-def _told(posterior: Posterior, curvature: float, force: float, area_ratio: float) -> ToldObject:
-    table = posterior.table
-    count = len(table.pressures_kPa)
-    rises = table.at(curvature, force)
-    logs = np.log(table.forces)
+def _told(posterior: Posterior, case: tuple[float, float], area_ratio: float, single: int) -> ToldObject:
+    """Intervals of a curvature and a force by all readings, over those by the ``single`` one."""
+    (curvature, force), table = case, posterior.table
+    rises, logs = table.at(curvature, force), np.log(table.forces)
     widths = []
-    for chosen in [*((k,) for k in range(count)), tuple(range(count))]:
+    for chosen in [(single,), tuple(range(len(table.pressures_kPa)))]:
         weights = posterior.of(rises, chosen)
         low, high = interval(logs, weights.sum(axis=0))
         widths.append(high - low)
@@ -275,10 +299,10 @@ def _told(posterior: Posterior, curvature: float, force: float, area_ratio: floa
         object=_words(curvature),
         ball_radius_mm=1.0 / curvature if curvature else None,
         force_N=force,
-        force_half_width_percent=100.0 * (math.exp(0.5 * widths[-1]) - 1.0),
+        force_half_width_percent=100.0 * (math.exp(0.5 * widths[1]) - 1.0),
         curvature_interval_per_mm=interval(bends, weights.sum(axis=1)),
         area_ratio=area_ratio,
-        force_ratio=widths[-1] / min(widths[:-1]),
+        force_ratio=widths[1] / widths[0],
         correlation=float(spread.sum() / math.sqrt(variances)) if variances > 0.0 else 0.0,
     )
 
@@ -287,28 +311,38 @@ def _confusion(posterior: Posterior, bends: Sequence[float], chosen: Sequence[in
     """Shares of objects (rows), pressed by random forces, that are told as each class (columns): the one whose
     probability, summed over all forces, is greatest."""
     table, random = posterior.table, np.random.default_rng(0)
-    rows = [int(np.abs(table.curvatures - one).argmin()) for one in bends]
+    at = np.interp(bends, table.curvatures, np.arange(len(table.curvatures)))
+    low = np.minimum(at.astype(int), len(table.curvatures) - 2)
+    share = (at - low)[:, None]
+    # Where the share is nothing the other row does not count, though it may be beyond the range.
+    rows = np.where(
+        share > 0.0, (1.0 - share) * table.rise[:, low] + share * table.rise[:, low + 1], table.rise[:, low]
+    )
+    only = Posterior(ObjectTable(table.pressures_kPa, np.asarray(bends), table.forces, rows), *posterior.errors)
     counts = np.zeros((len(bends), len(bends)))
     for i, bend in enumerate(bends):
         reach = table.reach(bend)
-        for force in np.exp(random.uniform(math.log(_LEAST * reach), math.log(reach), _DRAWS)):
-            (reading,) = posterior.drawn(table.at(bend, max(float(force), float(table.forces[0]))), 1, random)
-            weights = weights_of(posterior.logs(reading, rows), chosen)
-            counts[i, int(weights.sum(axis=1).argmax())] += 1.0
+        least = max(_LEAST * reach, float(table.forces[0]))
+        for force in np.exp(random.uniform(math.log(least), math.log(reach), _DRAWS)):
+            (reading,) = posterior.drawn(table.at(bend, float(force)), 1, random)
+            counts[i, int(only.of(reading, chosen).sum(axis=1).argmax())] += 1.0
     return tuple(tuple((row / _DRAWS).tolist()) for row in counts)
 
 
 def _planned(
-    design: str | DesignSource, changes: Changes | None, options: DiscriminationOptions, noise: float
+    design: str | DesignSource,
+    changes: Changes | None,
+    options: DiscriminationOptions,
+    noise: float,
+    asked_kPa: Sequence[float],
 ) -> PlannedReading:
     """The set of ``options.plan`` driving pressures, between the least and the greatest asked, whose mean region is
     smallest."""
     assert options.plan is not None
-    asked_kPa = options.driving_pressures_kPa
-    at_kPa = np.round(np.linspace(min(asked_kPa), max(asked_kPa), _STEPS), 2)
+    at_kPa = np.round(np.linspace(asked_kPa[0], asked_kPa[-1], _STEPS), 6)
     table = object_table(design, changes, at_kPa.tolist(), options.least_radius_mm, _COARSE)
     posterior = Posterior(table, noise, options.error_percent / 100.0)
-    cases = [(one, share * table.reach(one)) for one in _curvatures(options) for share in _SHARES]
+    cases = _cases(table, options)
     sets: list[tuple[int, ...]] = [(k,) for k in range(_STEPS)]
     sets += list(itertools.combinations_with_replacement(range(_STEPS), options.plan)) if options.plan > 1 else []
     means = np.exp(np.log(_areas(posterior, cases, sets)).mean(axis=0))

@@ -67,6 +67,7 @@ LINES: dict[str, tuple[str, ...]] = {
         "paper-dome --model membrane --set pneumatics.gauge=honeywell-abp2-5psi --json",
         "paper-dome --simulator urdf",
     ),
+    "discriminate": ("paper-dome --pressures 0,12 --balls 8 --json",),
     "respond": ("paper-dome --model membrane --step 2N", "paper-dome --model membrane --sine 5Hz --peak 2N --json"),
 }
 """Valid command lines; what they name lies in the folder of a case."""

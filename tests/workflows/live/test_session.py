@@ -150,3 +150,47 @@ def test_pieces_of_any_length_give_the_same_session():
         pieces.take(stream[at : at + size])
         at += size
     assert [one[2:] for one in whole.since(0)] == [one[2:] for one in pieces.since(0)]
+
+
+def test_columns_are_those_that_the_device_was_seen_to_send(tmp_path):
+    session = closed_form()
+    session.take(rest(202) + b"".join(line(202 + k, force_N=0.5) for k in range(50)))
+    recording = Recording(tmp_path / "one.csv")
+    session.record(recording)
+    # The first sample has no force: its amplifier was not ready.
+    session.take(line(252) + line(253, force_N=0.7))
+    session.stop_recording().close()
+    assert [row["force_N"] for row in read_rows(recording.path)] == ["", "0.7"]
+
+
+def test_a_tare_by_hand_during_a_run_is_whole_and_one_of_the_run_ends_with_it(tmp_path):
+    session = closed_form()
+    session.take(rest())
+    session.record(Recording(tmp_path / "one.csv"))
+    session.walk(lambda seconds: ("wait", 1.0), lambda seconds: seconds > 100.0)
+    assert not session.tared
+    session.tare()
+    session.take(rest(220, 202))
+    assert session.tared and session.state.status == "OK"
+    session.walk(lambda seconds: ("wait", 1.0), lambda seconds: True)
+    session.take(rest(20, 422))
+    assert session.tare_runs
+    session.stop_recording().close()
+    session.walk(None)
+    session.take(rest(20, 442))
+    assert not session.tare_runs and not session.tared
+
+
+def test_a_disk_that_is_full_as_the_device_is_pulled_ends_the_recording_alone(tmp_path):
+    session = closed_form()
+    session.take(rest())
+    recording = Recording(tmp_path / "one.csv")
+    session.record(recording)
+    session.take(line(202))
+
+    def full():
+        raise OSError(28, "No space left on device")
+
+    recording.flush = full
+    session.plugged(False)
+    assert session.failure.errno == 28 and session.link == "unplugged" and session.state.recording is None

@@ -94,6 +94,43 @@ def test_simulated_and_measured_runs_are_never_in_one_campaign(sensor, plan):
     with pytest.raises(InputError) as error:
         runs.check_source(simulated=False)
     assert error.value.key == "simulated"
+    with pytest.raises(InputError) as error:
+        runs.check_design("agilus-dome")
+    assert error.value.key == "plan"
+
+
+def test_a_run_that_is_cut_short_stays_open(sensor, tmp_path):
+    words = ["plan", "paper-dome", "--specimens", "1", "--set", AT, "--out", str(tmp_path)]
+    assert in_process(words, tmp_path).returncode == 0
+    runs = PlanRuns.of(tmp_path / "paper-dome-plan")
+    # As long as nothing was recorded it may be one or the other.
+    runs.check_source(simulated=True)
+    runs.check_source(simulated=False)
+    one = next(run for run in runs.open if run.kind == "steps")
+    with live_run(sensor, FAST) as running:
+        for number in (1, 2):
+            running.record_run(runs, one)
+            wait_for(lambda: running.session.recorded() > 40.0)
+            kept = running.stop()
+            assert kept.name.endswith(f".cut-{number}.csv") and len(read_rows(kept)) > 4000
+    assert one in runs.open and campaign_of(runs.folder)[0].simulated
+    (runs.folder / runs.runs[-1].file).write_text("mine")
+    with pytest.raises(InputError):
+        runs.check_source(simulated=False)
+
+
+def test_a_recording_without_a_zero_states_no_driving_pressure(sensor, tmp_path):
+    free = FreeCampaign(tmp_path, "paper-dome", (), simulated=True)
+    with live_run(sensor, "simulated", pressure_kPa=12.0) as running:
+        running.record_free(free)
+        wait_for(lambda: running.session.recorded() > 0.5)
+        running.stop()
+        wait_for(lambda: running.session.tared)
+        running.record_free(free)
+        wait_for(lambda: running.session.recorded() > 0.5)
+    first, second = campaign_of(tmp_path)[0].runs
+    assert "driving_pressure_kPa" not in first.model_fields_set
+    assert second.driving_pressure_kPa == pytest.approx(12.0, abs=0.1)
 
 
 def test_steps_follow_the_plan_and_the_zero_is_taken_before_each_press(plan):

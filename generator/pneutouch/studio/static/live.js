@@ -15,6 +15,7 @@ const LINKS = {
   foreign: "The device sends something else than lines of a pneutouch sketch.",
   unplugged: "The device was unplugged. It is opened again when it is back.",
   closed: "No device is open.",
+  elsewhere: "Another page watches the device. Reload this one to watch it here.",
 };
 /** Statuses of a reading in words; with others there is a force. */
 const WITHOUT = {
@@ -164,15 +165,17 @@ class LivePage {
         rest = lines.pop();
         for (const line of lines) if (line) this.take(JSON.parse(line));
       }
-      if (number === this.number) this.take({ state: { ...this.state, link: "closed", recording: null, step: "" } });
+      if (number === this.number && !this.elsewhere) this.take({ state: { ...this.state, link: "closed", recording: null, step: "" } });
     } catch (error) {
       this.failed(error);
     }
   }
 
   /** Take a frame; it is painted with the next picture of the screen. */
-  take({ points, made, state, file, fault, touch }) {
-    if (touch) {
+  take({ points, made, state, file, fault, touch, elsewhere }) {
+    this.elsewhere = Boolean(elsewhere);
+    if (elsewhere) this.state = { ...this.state, link: "elsewhere" };
+    if (touch?.kind) {
       this.touch = touch;
       // Of a pad the last sample of a frame is read.
       [points.at(-1)[1], points.at(-1)[2]] = [touch.force_N, touch.uncertainty_N];

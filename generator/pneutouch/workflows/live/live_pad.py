@@ -89,7 +89,7 @@ class PadRecordings:
         """File of the next recording."""
         return next_file(self.folder)
 
-    def enter(self, file: Path, pressure_kPa: float) -> None:
+    def enter(self, file: Path, pressure_kPa: float | None) -> None:
         """Write the entry of a recording to the end of the campaign file."""
         run = PadRun(file=file.relative_to(self.folder).as_posix(), kind="hand")
         with (self.folder / _CAMPAIGN).open("a", encoding="utf-8") as campaign:

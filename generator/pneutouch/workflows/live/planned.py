@@ -27,8 +27,6 @@ _WORDS = {
 
 _CLEAR = "lift the object by {value:g} {unit} above the sensor"
 
-_MEASURED = "\nsimulated = false\n"
-
 BY_HAND = ("injection",)
 """Kinds of run whose readings are written down, and not recorded over time."""
 
@@ -39,6 +37,7 @@ class PlanRuns:
 
     folder: Path
     runs: tuple[PlannedRun, ...]
+    design: str
 
     @classmethod
     def of(cls, folder: Path) -> "PlanRuns":
@@ -47,12 +46,19 @@ class PlanRuns:
         if not path.is_file():
             raise InputError("holds no plan.json", file=folder, remedy="`pneutouch plan DESIGN` writes one")
         try:
-            runs = TypeAdapter(tuple[PlannedRun, ...]).validate_python(json.loads(read_bytes(path))["runs"])
+            plan = json.loads(read_bytes(path))
+            runs, design = TypeAdapter(tuple[PlannedRun, ...]).validate_python(plan["runs"]), str(plan["design"])
         except (ValueError, KeyError, TypeError, ValidationError) as error:
             raise InputError(f"is no plan: {error}", file=path, remedy="plan anew") from None
         for place, run in enumerate(runs):
             inside(folder, run.file, file=path, key=f"runs[{place}].file")
-        return cls(folder, runs)
+        return cls(folder, runs, design)
+
+    def check_design(self, name: str) -> None:
+        """Raise InputError for a sensor of another design than that of the plan."""
+        if name != self.design:
+            problem = f"is of {self.design}, and the sensor is of {name}"
+            raise InputError(problem, key="plan", value=str(self.folder), remedy="plan for this design")
 
     @cached_property
     def recordable(self) -> tuple[PlannedRun, ...]:
@@ -60,20 +66,20 @@ class PlanRuns:
         return tuple(run for run in self.runs if run.kind not in BY_HAND)
 
     def check_source(self, simulated: bool) -> None:
-        """Make the plan's campaign one of simulated runs where nothing was recorded yet and ``simulated`` is true.
+        """Make the plan's campaign one of simulated runs, or of measured ones, where nothing was recorded yet.
 
         Raises InputError where simulated and measured runs would be in one campaign."""
         path = self.folder / CAMPAIGN
         campaign, _ = campaign_of(path)
         if campaign.simulated == simulated:
             return
-        text = read_bytes(path).decode()
-        recorded = any((self.folder / run.file).exists() for run in campaign.runs)
-        if campaign.simulated or recorded or text.count(_MEASURED) != 1:
+        text, recorded = read_bytes(path).decode(), any((self.folder / run.file).exists() for run in campaign.runs)
+        here, there = (f"\nsimulated = {str(one).lower()}\n" for one in (campaign.simulated, simulated))
+        if recorded or text.count(here) != 1:
             kinds = ("simulated", "measured") if campaign.simulated else ("measured", "simulated")
             problem = f"is of {kinds[0]} runs, and a {kinds[1]} one cannot be among them"
-            raise InputError(problem, file=path, key="simulated", remedy="plan into another folder, by `plan --out`")
-        replace_file(path, text.replace(_MEASURED, "\nsimulated = true\n").encode())
+            raise InputError(problem, file=path, key="simulated", remedy="plan into another folder")
+        replace_file(path, text.replace(here, there).encode())
 
     @property
     def open(self) -> tuple[PlannedRun, ...]:

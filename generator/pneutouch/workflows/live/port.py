@@ -1,6 +1,7 @@
 """The serial port of a live device, read by a thread; a device that was unplugged is opened again when it is back."""
 
 import contextlib
+import termios
 import threading
 import time
 from typing import Any, Protocol
@@ -11,8 +12,11 @@ from pneutouch.workflows.live.session import LiveSession
 BAUD = 115_200
 """Bits a second of the sketch."""
 
-_WAIT_S, _AGAIN_S = 0.02, 0.5
-"""Longest wait for bytes, and time between two attempts to open the port again."""
+_WAIT_S, _AGAIN_S, _ASK_S = 0.02, 0.5, 1.0
+"""Longest wait for bytes, and times between two attempts to open the port again and two questions for the name."""
+
+_FAULTS = (OSError, termios.error)
+"""Errors of a port whose device goes away; those of the terminal are none of the system's in Python."""
 
 
 class _Serial(Protocol):
@@ -47,7 +51,7 @@ def open_port(name: str, baud: int = BAUD) -> _Serial:
     serial = _pyserial()
     try:
         opened: _Serial = serial.Serial(name, baud, timeout=_WAIT_S, write_timeout=1.0, exclusive=True)
-    except (OSError, ValueError) as error:
+    except (*_FAULTS, ValueError) as error:
         known = ", ".join([*ports(), "simulated"])
         words = str(error).lower()
         problem, use = f"cannot be opened: {error}", "give another"
@@ -71,14 +75,18 @@ class PortThread:
         self._thread.start()
 
     def _run(self) -> None:
-        self._ask()
+        asked = 0.0
         while not self._ended.is_set():
+            # A board that begins anew as the port is opened does not hear the first question.
+            if not self._session.is_named and time.monotonic() - asked > _ASK_S:
+                asked = time.monotonic()
+                self._ask()
             if self._serial is None:
                 self._again()
                 continue
             try:
                 piece = self._serial.read(max(1, self._serial.in_waiting))
-            except OSError:
+            except _FAULTS:
                 self._lost()
                 continue
             if piece:
@@ -86,13 +94,13 @@ class PortThread:
 
     def _ask(self) -> None:
         """Ask the device for its name; one that cannot be written to has none."""
-        with contextlib.suppress(OSError):
+        with contextlib.suppress(*_FAULTS):
             if self._serial is not None:
                 self._serial.write(b"?")
 
     def _lost(self) -> None:
         if self._serial is not None:
-            with contextlib.suppress(OSError):
+            with contextlib.suppress(*_FAULTS):
                 self._serial.close()
         self._serial = None
         if not self._ended.is_set():
@@ -105,7 +113,6 @@ class PortThread:
             time.sleep(_AGAIN_S)
             return
         self._session.plugged(True)
-        self._ask()
 
     def close(self) -> None:
         """End the thread and close the port."""

@@ -142,6 +142,9 @@ _STEPS = 64
 _JUMP_MS, _TIMES = 500.0, 20.0
 """Least step that may be a jump of the clock, and least multiple of the usual one: our choice."""
 
+_LEAST_MS = 0.01
+"""Least step between two samples."""
+
 _FIRST_MS = 10.0
 """Step that stands for the usual one before there is any."""
 
@@ -158,13 +161,26 @@ class DeviceClock:
     said: Callable[[str], None]
     lost: int = 0
     seconds: float = 0.0
+    _true: float = 0.0
+    _was_away: bool = False
     _last: DeviceSample | None = None
     _steps: deque[float] = field(default_factory=lambda: deque(maxlen=_STEPS))
 
     @property
     def usual_ms(self) -> float:
-        """Usual step between two samples."""
-        return statistics.median(self._steps) if self._steps else _FIRST_MS
+        """Usual step between two samples; the mean where most are within one tick of the clock."""
+        if not self._steps:
+            return _FIRST_MS
+        return statistics.median(self._steps) or max(statistics.fmean(self._steps), _LEAST_MS)
+
+    @property
+    def rate_Hz(self) -> float | None:
+        """Samples a second; None before there are any."""
+        return 1e3 / max(statistics.fmean(self._steps), _LEAST_MS) if self._steps else None
+
+    def away(self) -> None:
+        """Note that the device was unplugged: its counters mean nothing to those before."""
+        self._was_away = True
 
     def step(self, sample: DeviceSample, waited_s: float) -> float:
         """Seconds from the sample before to this one; ``waited_s`` passed on this machine, which counts where the
@@ -174,10 +190,11 @@ class DeviceClock:
             return 0.0
         count = (sample.number - last.number) % TURN
         moved_ms = (sample.time_ms - last.time_ms) % TURN
-        if count == 0 or count > TURN // 2:
-            self.said("the device began anew: its counter went back")
+        if self._was_away or count == 0 or count > TURN // 2:
+            self.said("the device was away" if self._was_away else "the device began anew: its counter went back")
+            self._was_away = False
             seconds = max(waited_s, 1e-3 * self.usual_ms)
-        elif not 0.0 < moved_ms < TURN / 2 or moved_ms > self._most(count, waited_s):
+        elif moved_ms > TURN / 2 or moved_ms > self._most(count, waited_s):
             self.said("the clock of the device jumped: time goes on by its usual step")
             self.lost += count - 1
             seconds = 1e-3 * count * self.usual_ms
@@ -185,8 +202,11 @@ class DeviceClock:
             self.lost += count - 1
             self._steps.append(moved_ms / count)
             seconds = 1e-3 * moved_ms
-        self.seconds += seconds
-        return seconds
+        self._true += seconds
+        # Samples within one tick of the device's clock come one after the other.
+        step = max(self._true - self.seconds, 1e-3 * _LEAST_MS)
+        self.seconds += step
+        return step
 
     def _most(self, count: int, waited_s: float) -> float:
         """Greatest step of the clock over ``count`` samples, ms: a pause of the device is one here too."""

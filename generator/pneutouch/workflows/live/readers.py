@@ -120,6 +120,11 @@ class Tare:
         self.status, self._rows = (self.reader.tare(self._rows) if self._rows else Status.NOT_TARED.name), []
         return self.status
 
+    @property
+    def is_held(self) -> bool:
+        """True while readings are collected until `finish`."""
+        return self._held
+
     def forget(self) -> None:
         """Count the zero as unknown: the driving pressure changes."""
         self.status, self._rows, self._held = Status.NOT_TARED.name, [], False

@@ -27,13 +27,15 @@ class Recording:
     """One run as a CSV file: time, then travel and force if the device sends them, and pressures.
 
     ``path`` is the file's name when it is closed. ``mark`` is its first line, a comment, or empty.
-    Samples beyond ``most_s`` seconds are left out, and the recording is ``full``.
+    Samples beyond ``most_s`` seconds are left out, and the recording is ``full``. ``beside``: whether the device was
+    seen to send travel and force, whose columns are there then.
     """
 
     path: Path
     mark: str = ""
     most_s: float = math.inf
     full: bool = False
+    beside: tuple[bool, bool] = (False, False)
     seconds: float = 0.0
     rows: int = 0
     _file: IO[str] | None = field(default=None, repr=False)
@@ -72,7 +74,8 @@ class Recording:
 
     def _begin(self, sample: DeviceSample) -> None:
         names = ["position_mm", "force_N", *pressure_columns(len(sample.pressures_kPa))]
-        beside = [k for k, one in enumerate((sample.position_mm, sample.force_N)) if not math.isnan(one)]
+        sent = (not math.isnan(sample.position_mm), not math.isnan(sample.force_N))
+        beside = [k for k in range(2) if sent[k] or self.beside[k]]
         self._kept = [*beside, *range(2, len(names))]
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self._file = self.cut_off.open("x", encoding="utf-8")
@@ -94,15 +97,19 @@ class Recording:
                 self._file.close()
             self._file = None
 
-    def close(self) -> Path | None:
-        """End the recording and give the file its name; None if nothing was recorded."""
+    def close(self, *, cut: bool = False) -> Path | None:
+        """End the recording and give the file its name, or one that says that it was ``cut`` short; None if nothing was
+        recorded."""
         if self._file is None:
             return None
         self.flush()
         self._file.close()
         self._file = None
-        self.cut_off.rename(self.path)
-        return self.path
+        path, number = self.path, 1
+        while cut and (path == self.path or path.exists()):
+            path, number = self.path.with_name(f"{self.path.stem}.cut-{number}.csv"), number + 1
+        self.cut_off.rename(path)
+        return path
 
 
 def next_file(folder: Path) -> Path:
@@ -131,8 +138,8 @@ class Recordings(Protocol):
     def next_file(self) -> Path:
         """File of the next recording."""
 
-    def enter(self, file: Path, pressure_kPa: float) -> None:
-        """Enter a recording at a driving pressure."""
+    def enter(self, file: Path, pressure_kPa: float | None) -> None:
+        """Enter a recording at a driving pressure; None: not known."""
 
 
 @dataclass(frozen=True)
@@ -159,19 +166,21 @@ class FreeCampaign:
         """File of the next run."""
         return next_file(self.folder)
 
-    def enter(self, file: Path, pressure_kPa: float) -> None:
+    def enter(self, file: Path, pressure_kPa: float | None) -> None:
         """Write the entry of a run to the end of the campaign file, which is made if there is none; what stands in it
         stays as it is. The kind of the run is left out: it is recognised."""
         path, name = self.folder / CAMPAIGN, file.relative_to(self.folder).as_posix()
         before = campaign_of(self.folder)[0].runs if path.exists() else []
-        here_kPa = round(max(pressure_kPa, 0.0), 2)
+        here_kPa = 0.0 if pressure_kPa is None else round(max(pressure_kPa, 0.0), 2)
         run = CampaignRun(
             file=name,
             sensor="live",
             driving_pressure_kPa=here_kPa,
             run=1 + sum(one.driving_pressure_kPa == here_kPa and one.sensor == "live" for one in before),
         )
-        entry = run.model_dump(mode="python", exclude_none=True, exclude={"kind", "age_days", "resin"})
+        unknown = {"driving_pressure_kPa"} if pressure_kPa is None else set()
+        left_out = {"kind", "age_days", "resin", *unknown}
+        entry = run.model_dump(mode="python", exclude_none=True, exclude=left_out)
         head = {
             "campaign_format": format_of("campaign"),
             "title": f"Live recordings of {self.design}"[:120],

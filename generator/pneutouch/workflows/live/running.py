@@ -15,8 +15,8 @@ from pneutouch.workflows.live.sensor import LiveSensor, faster_of, mark_of
 from pneutouch.workflows.live.session import LiveSession
 from pneutouch.workflows.live.simulated import SimulatedDevice
 
-FIRST_S = 5.0
-"""Time in which the first sample must come: a board that begins anew takes two seconds."""
+FIRST_S = 10.0
+"""Time in which the first sample must come: a board that begins anew as the port is opened tares after two seconds."""
 
 
 class LiveRun:
@@ -27,6 +27,7 @@ class LiveRun:
         self._campaign: Recordings | None = None
         self._pending: tuple[Recording, RunSteps, float] | None = None
         self._steps: RunSteps | None = None
+        self._at_kPa: float | None = None
         self.file: Path | None = None
         self._begun = time.monotonic()
 
@@ -46,12 +47,13 @@ class LiveRun:
         """Record a run of a plan into its file. Raises InputError if it is there."""
         steps = RunSteps(run)
         recording = Recording(plan.folder / run.file, mark_of(self.port), steps.seconds)
+        plan.check_design(self.sensor.name)
         recording.check()
-        plan.check_source(self.device is not None)
+        rig = None if self.device is None else self.sensor.rig(run.driving_pressure_kPa)
+        plan.check_source(rig is not None)
         self.stop()
         self._campaign, self._steps = None, steps
-        if self.device is not None:
-            rig = self.sensor.rig(run.driving_pressure_kPa)
+        if self.device is not None and rig is not None:
             self._record(recording, self.device.play(rig.run(run), rig.idle))
         elif steps.before:
             self._pending = recording, steps, self.session.seconds
@@ -75,7 +77,7 @@ class LiveRun:
         """Record a run of a campaign of its own. Raises InputError as its `check`."""
         campaign.check()
         self.stop()
-        self._campaign, self._steps = campaign, None
+        self._campaign, self._steps, self._at_kPa = campaign, None, self._zero_kPa()
         self._record(Recording(campaign.next_file(), mark_of(self.port)), None)
 
     def advance(self) -> bool:
@@ -101,15 +103,18 @@ class LiveRun:
         self.session.walk(None)
         if recording is None:
             return None
-        path = recording.close()
+        cut = steps is not None and not recording.full
+        path = recording.close(cut=cut)
         if path is not None:
-            zero_kPa = self.session.state.driving_pressures_kPa[0]
             if self._campaign is not None:
-                self._campaign.enter(path, zero_kPa or 0.0)
-            cut = steps is not None and not recording.full
-            self.session.say(f"{path.name} has {recording.seconds:.1f} s{', cut short' if cut else ''}")
+                self._campaign.enter(path, self._at_kPa if self._at_kPa is not None else self._zero_kPa())
+            self.session.say(f"{path.name} has {recording.seconds:.1f} s{'; the run was cut short' if cut else ''}")
             self.file = path
         return path
+
+    def _zero_kPa(self) -> float | None:
+        """Driving pressure by the zero; None before a tare."""
+        return self.session.state.driving_pressures_kPa[0] if self.session.tared else None
 
     def record(self) -> LiveRecord:
         """The record of what was read, now."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from pneutouch.bench.indents import protocol
-from pneutouch.bench.simulate.curve import press_curves, stopped
+from pneutouch.bench.simulate.curve import stopped
 from pneutouch.bench.simulate.rig import MARK
 from pneutouch.bench.simulate.runs import SimulationTruth, within
 from pneutouch.catalogue import DesignSource
@@ -13,7 +13,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.reader import reader_grid
 from pneutouch.evaluation.reader_tables import reader_tables
-from pneutouch.evaluation.resins import tested_kPa
+from pneutouch.evaluation.resins import pressed, tested_kPa
 from pneutouch.export.reader.reading import ForceReader
 from pneutouch.formats import versioned
 from pneutouch.mechanics.models.choice import model_options
@@ -69,7 +69,8 @@ def _rig(evaluation: Evaluation, pressure_kPa: float | None) -> SimulatedRig:
     at = (tested_kPa(evaluation.scene)[0] if pressure_kPa is None else pressure_kPa) * KPA
     height = sensor.dome.shape.height
     depth = max(protocol("saturation", height).depths)
-    (curve,) = stopped(press_curves(sensor, [at], depth, "auto"), truth.force_range, truth.pressure_range).curves
+    curves = pressed(evaluation.scene.name, sensor, [at], depth, "auto")
+    (curve,) = stopped(curves, truth.force_range, truth.pressure_range).curves
     return SimulatedRig(curve, truth, RATE_HZ, lambda kind: within(protocol(kind, height), curve.reach))
 
 

@@ -19,6 +19,9 @@ KEPT_S = 30.0
 _MOST_KEPT = 60_000
 _MOST_SAID = 8
 _SILENT_S = 1.0
+_RECENT = 500
+"""Number of last samples by which it is known what the device sends."""
+
 _FOREIGN = 200
 """Bytes without a line of the protocol from which a device counts as one that sends something else."""
 
@@ -64,6 +67,8 @@ class LiveSession:
             damaged = self._lines.damaged
             for item in self._lines.feed(piece):
                 if isinstance(item, DeviceName):
+                    if item != self._device:
+                        self.say(f"the device is made for {item.name}")
                     self._device = item
                 else:
                     self._add(item)
@@ -107,7 +112,7 @@ class LiveSession:
         """Take the zero anew while the run's rest ends; its driving pressure was set again."""
         if is_due and not self._tare.runs:
             self._tare.begin(held=True)
-        elif not is_due and self._tare.runs:
+        elif not is_due and self._tare.is_held:
             self._status = self._tare.finish()
 
     def _read(self, sample: DeviceSample) -> LiveReading:
@@ -123,10 +128,16 @@ class LiveSession:
         try:
             self._recording.add(sample, seconds)
         except OSError as error:
-            # What is on the disk stays; the command ends with the system's words.
+            self._fail(error)
+
+    def _fail(self, error: OSError) -> None:
+        """End a recording that cannot be written; what is on the disk stays, and the command ends with the words of the
+        system."""
+        if self._recording is not None:
             self._recording.abandon()
-            self.failure, self._recording = error, None
-            self.say(f"the recording ended: {error.strerror}")
+        self.failure, self._recording = error, None
+        self.walk(None)
+        self.say(f"the recording ended: {error.strerror}")
 
     def newest(self) -> LivePoint | None:
         """The last sample with its reading; None before the first."""
@@ -151,6 +162,11 @@ class LiveSession:
             self._tare.begin()
 
     @property
+    def is_named(self) -> bool:
+        """True if the device said for which design it was made."""
+        return self._device is not None
+
+    @property
     def tared(self) -> bool:
         """True if there is a zero."""
         return self._tare.is_read
@@ -165,6 +181,11 @@ class LiveSession:
         `Recording.check`."""
         recording.check()
         with self._lock:
+            recent = [one.sample for one in list(self._points)[-_RECENT:]]
+            recording.beside = (
+                any(not math.isnan(one.position_mm) for one in recent),
+                any(not math.isnan(one.force_N) for one in recent),
+            )
             self._recording, self._recorded_from = recording, first
 
     def recorded(self) -> float:
@@ -188,7 +209,7 @@ class LiveSession:
         anew where ``zero`` is true; until then it is unknown."""
         with self._lock:
             self._step, self._zero = step, zero
-            if zero is not None:
+            if zero is not None or self._tare.is_held:
                 self._tare.forget()
 
     def plugged(self, is_plugged: bool) -> None:
@@ -196,10 +217,14 @@ class LiveSession:
         with self._lock:
             if self._unplugged == is_plugged:
                 self._lines.forget()
+                self._clock.away()
                 self.say("the device is there again" if is_plugged else "the device was unplugged")
             self._unplugged = not is_plugged
             if self._recording is not None and not is_plugged:
-                self._recording.flush()
+                try:
+                    self._recording.flush()
+                except OSError as error:
+                    self._fail(error)
 
     @property
     def link(self) -> str:
@@ -232,7 +257,7 @@ class LiveSession:
                 driving_pressures_kPa=tuple(known[:-2]),
                 noise_kPa=known[-2] if self._tare.is_read else None,
                 drift_kPa=known[-1] if self._tare.is_read else None,
-                rate_Hz=1e3 / self._clock.usual_ms if self.samples > 1 else None,
+                rate_Hz=self._clock.rate_Hz,
                 samples=self.samples,
                 lost=self._clock.lost,
                 damaged=self._lines.damaged,

@@ -106,7 +106,7 @@ class SimulatedDevice:
         os.set_blocking(self._master, False)
         self._number, self._skipped = 0, 0
         self._lock, self._ended = threading.Lock(), threading.Event()
-        self.began = time.time()
+        self._began, self._day = time.monotonic(), time.time()
         self._thread = threading.Thread(target=self._work, daemon=True)
         self._thread.start()
 
@@ -118,12 +118,12 @@ class SimulatedDevice:
 
     def made(self, number: int) -> float:
         """Time of day, s, at which a sample was made."""
-        return self.began + number / self._rate / self._faster
+        return self._day + number / self._rate / self._faster
 
     def _work(self) -> None:
         while not self._ended.wait(_PAUSE_S):
             self._answer()
-            due = int((time.time() - self.began) * self._rate * self._faster) - self._number
+            due = int((time.monotonic() - self._began) * self._rate * self._faster) - self._number
             while due > 0:
                 self._send(min(due, _BLOCK))
                 due -= _BLOCK
