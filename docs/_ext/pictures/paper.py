@@ -113,13 +113,7 @@ def _sensitivities(ax: Axes, found: dict[str, Any]) -> None:
     ax.set_title("Figure 6(g)", fontsize=7.5, loc="left")
 
 
-_SETS = {
-    "0": (MUTED, "-"),
-    "12": (INK, "--"),
-    "22": (MUTED, ":"),
-    "0 + 22": (INK, "-"),
-    "0 + 12 + 22": (ACCENT, "-"),
-}
+_SETS = {"0": (MUTED, "-"), "12": (INK, "--"), "22": (MUTED, ":"), "0 + 22": (INK, "-"), "0 + 12 + 22": (ACCENT, "-")}
 """Tone and line of each set of driving pressures."""
 
 
