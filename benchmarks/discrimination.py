@@ -55,7 +55,7 @@ def covered(posterior: Posterior) -> dict[str, float]:
         bend, log = random.uniform(bends[0], bends[-1]), random.uniform(logs[0], logs[-1])
         if log > math.log(table.reach(bend)):
             continue
-        weights = posterior.of(posterior.drawn(table.at(bend, math.exp(log)), 1, random)[0], range(len(PRESSURES)))
+        weights = posterior.of(posterior.drawn(table.at(bend, math.exp(log)), random), range(len(PRESSURES)))
         for k, (true, values, axis) in enumerate(((bend, bends, 1), (log, logs, 0))):
             low, high = interval(values, weights.sum(axis=axis))
             inside[k] += low <= true <= high

@@ -79,7 +79,7 @@ def covered(table, noise, error, count, seed=1):
         if log > math.log(table.reach(bend)):
             continue
         tried += 1
-        (reading,) = posterior.drawn(table.at(bend, math.exp(log)), 1, random)
+        reading = posterior.drawn(table.at(bend, math.exp(log)), random)
         weights = posterior.of(reading, range(len(reading)))
         for k, (true, values, axis) in enumerate(((bend, bends, 1), (log, logs, 0))):
             low, high = interval(values, weights.sum(axis=axis))
@@ -151,6 +151,12 @@ def test_a_plan_is_better_than_any_single_pressure_and_none_of_its_size_is_bette
     assert record.plan.driving_pressures_kPa == (0.0, 22.0) and record.plan.area_ratio < 0.3
     three = discriminate("paper-dome", None, options.model_copy(update={"plan": 3}))
     assert three.plan.area_ratio < record.plan.area_ratio
+
+
+def test_friction_and_place_of_the_design_s_own_object_do_not_count():
+    few = DiscriminationOptions(driving_pressures_kPa=[0.0, 22.0], classes_mm=[8.0])
+    changed = {"contact.friction": 0.8, "contact.offset_mm": 2.0}
+    assert discriminate("paper-dome", changed, few).told == discriminate("paper-dome", None, few).told
 
 
 @pytest.mark.parametrize(

@@ -92,7 +92,7 @@ def test_pads_are_compared_with_pads(home, tmp_path):
 
 
 def test_presses_by_hand_alone_give_the_force(plan, folder):
-    file = folder / campaign.CAMPAIGN
+    file = folder / campaign.PAD_CAMPAIGN
     text = file.read_text()
     first, _, rest = text.partition("[[runs]]")
     file.write_text(first + "[[runs]]" + rest.partition("[[runs]]")[2])
@@ -213,7 +213,7 @@ def test_a_pad_given_by_its_path_is_found_again(home, tmp_path):
     place = tmp_path / "elsewhere.toml"
     place.write_text((home / "designs/pads/tip.toml").read_text())
     made = campaign.simulate_pad(campaign.plan_pad(load_pad(str(place), {CHANGED: [0.0, 12.0]})), tmp_path, 1)
-    file = made / campaign.CAMPAIGN
+    file = made / campaign.PAD_CAMPAIGN
     file.write_text(file.read_text().replace("assignments = []", f"assignments = ['{AT}']"))
     assert measured.read_campaign(made).pad.name == "elsewhere"
 

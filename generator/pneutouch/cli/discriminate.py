@@ -36,7 +36,7 @@ def discrimination_text(record: DiscriminationRecord) -> str:
     rows = []
     for one in record.told:
         low, high = one.curvature_interval_per_mm
-        radii = f"{_radius(high)} to {_radius(low)}"
+        radii = "plate" if high < _FLAT else f"{_radius(high)} to {_radius(low)}"
         ratios = [f"{one.area_ratio:.2f}", f"{one.force_ratio:.2f}"]
         rows.append([one.object, f"{one.force_N:.3g}", f"{one.force_half_width_percent:.1f}", radii, *ratios])
     lines = [

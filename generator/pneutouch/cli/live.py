@@ -4,6 +4,7 @@ import math
 import select
 import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +14,7 @@ from pneutouch.cli.app import CalibrationOption, DesignArgument, JsonOption, Set
 from pneutouch.cli.complete import parameters_of
 from pneutouch.cli.pad_commands import is_pad, live_of_pad
 from pneutouch.cli.terminal import bar, echo, filled_text, notify, report_next, set_words
-from pneutouch.errors import InputError
+from pneutouch.errors import ComputationError, InputError
 from pneutouch.spec.toml_text import assignments
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ parameter = parameters_of(__file__)
 _PAINT_S, _LINE_S = 0.1, 0.5
 _GONE_S = 60.0
 """Seconds after which a device that was unplugged is given up."""
+
+_SAID = 64
+"""Number of last events that are not repeated."""
 
 
 @app.command()
@@ -66,7 +70,7 @@ def live(
     if record is not None and is_pad(design):
         free = PadRecordings(record, design, is_simulated)
     elif record is not None:
-        free = FreeCampaign(record, design, assignments(fields), is_simulated)
+        free = FreeCampaign.of(record, design, assignments(fields), is_simulated)
     if free is not None:
         free.check()
     with bar("tabulating the sensor"):
@@ -94,8 +98,6 @@ def _watch(running: "LiveRun", show: Callable[["LiveRun"], None], seconds: float
     """Show what is read until the time is over, or the run of a plan is complete: True then.
 
     Raises InputError and ComputationError for a device that does not speak, or is gone."""
-    from pneutouch.workflows.live.running import lost_for_good
-
     lost_since: float | None = None
     while seconds is None or running.session.seconds < seconds:
         if running.advance():
@@ -106,7 +108,7 @@ def _watch(running: "LiveRun", show: Callable[["LiveRun"], None], seconds: float
         elif running.session.samples:
             lost_since = lost_since or time.monotonic()
             if time.monotonic() - lost_since > _GONE_S:
-                lost_for_good(running, _GONE_S)
+                raise ComputationError(f"the device at {running.port} did not come back in {_GONE_S:g} s")
         show(running)
         if sys.stdin.isatty() and select.select([sys.stdin], [], [], 0.0)[0] and sys.stdin.readline().strip() == "t":
             running.session.tare()
@@ -117,7 +119,7 @@ def _watch(running: "LiveRun", show: Callable[["LiveRun"], None], seconds: float
 @contextmanager
 def _view(*, json: bool) -> Iterator[Callable[["LiveRun"], None]]:
     """Function that shows what is read: a panel on a terminal, else a line now and then; events on stderr."""
-    said: list[str] = []
+    said: deque[str] = deque(maxlen=_SAID)
 
     def events(running: "LiveRun") -> None:
         for words in running.session.state.said:

@@ -53,15 +53,15 @@ def plan_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: P
 
 def simulate_a_pad(context: typer.Context, name: str, set_: list[str] | None, out: Path, seed: int) -> None:
     """Simulate recordings of a pad, given by its name or by the folder of its plan."""
-    from pneutouch.spec.pad import PadCampaign
+    from pneutouch.spec.pad import PAD_CAMPAIGN, PadCampaign
     from pneutouch.spec.read import parse_changes, read_toml, validate
-    from pneutouch.workflows.pad.campaign import CAMPAIGN, plan_pad, simulate_pad
+    from pneutouch.workflows.pad.campaign import plan_pad, simulate_pad
     from pneutouch.workflows.pad.load import load_pad
 
     _refuse_others(context, name, "design", "set_", "out", "seed")
     given = changes(set_)
     if is_planned(name):
-        campaign: PadCampaign = validate(PadCampaign, read_toml(Path(name) / CAMPAIGN), f"{name}/{CAMPAIGN}")
+        campaign: PadCampaign = validate(PadCampaign, read_toml(Path(name) / PAD_CAMPAIGN), f"{name}/{PAD_CAMPAIGN}")
         name, given = campaign.pad, parse_changes(campaign.assignments) | given
     pad = load_pad(name, given)
     with _tabulating("simulating presses") as made_by:

@@ -12,6 +12,10 @@ from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
 
 MOST_CELLS = 64
+
+PAD_CAMPAIGN = "pad-campaign.toml"
+"""Name of the file of a pad's campaign."""
+
 _LAYOUT = re.compile(r"(ring|row|hex):([1-9]\d?)|grid:([1-9]\d?)x([1-9]\d?)|points")
 _FORMS = "ring:N, row:N, hex:N, grid:NxM or points"
 
@@ -191,3 +195,8 @@ class PadCalibration(Table):
     readings: int = Field(ge=1, description="Number of readings.")
     simulated: bool = Field(default=False, description="True if the campaign was simulated.")
     digest: str = Field(description="SHA-256 of the recordings.")
+
+
+def channels(count: int) -> list[str]:
+    """Names of the columns of pressure, kPa, in the order of the cells."""
+    return [f"pressure_{k}_kPa" for k in range(1, count + 1)]

@@ -3,8 +3,6 @@
 import asyncio
 import contextlib
 import json
-import os
-import sys
 from collections.abc import AsyncIterator, Callable, Container, Mapping
 from typing import Any
 
@@ -18,10 +16,10 @@ from pneutouch.results.record import plain
 from pneutouch.spec.values import plain_number
 from pneutouch.studio.form import Question, json_body
 from pneutouch.studio.guard import fault_response
+from pneutouch.studio.solver import process_of
 from pneutouch.workflows.live.port import BAUD, ports
 from pneutouch.workflows.live.sensor import SIMULATED, faster_of
 
-_LONGEST_LINE = 1 << 24
 _KEPT = 512
 """Greatest number of frames that wait for the page; older ones are left out."""
 
@@ -126,17 +124,7 @@ class LiveDesk:
 
     async def _start(self, request: Mapping[str, Any]) -> None:
         self._fault = b""
-        self._process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "pneutouch.studio.live_process",
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            stderr=asyncio.subprocess.DEVNULL,
-            limit=_LONGEST_LINE,
-            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-            start_new_session=True,
-        )
+        self._process = await process_of("pneutouch.studio.live_process")
         await self._send(request)
         self._watch = asyncio.create_task(self._read(self._process))
 

@@ -83,7 +83,7 @@ class _Watched:
         question = Question.of(self._request["question"])
         changed = [f"{key}={text}" for key, text in question.values.items() if text is not None]
         parse_changes(changed)
-        return FreeCampaign(folder, self._request["bases"][question.base], changed, simulated)
+        return FreeCampaign.of(folder, self._request["bases"][question.base], changed, simulated)
 
     def _frame(self) -> None:
         points = self._running.session.since(self._sent)[:_MOST]

@@ -2,7 +2,7 @@
 
 A plate or a ball presses the sensor centrally by a force that stays the same while the driving pressure changes. One
 reading tells a curve of forces and curvatures; at a higher driving pressure the wall is tenser and the radius of the
-object matters less, so that readings at several pressures tell both (paper, section 4: several sensitivities).
+object matters less, so that readings at several pressures tell both (paper, introduction: several sensitivities).
 """
 
 import itertools
@@ -40,10 +40,13 @@ _HELD = 0.95
 _DRAWS = 400
 """Draws of force and noise for the confusion of classes."""
 
+_CENTRAL = {"contact.object": "plate"} | dict.fromkeys(
+    ("contact.friction", "contact.offset_mm", "contact.tilt_deg", "contact.shear_mm"), 0.0
+)
+"""Contact whatever that of the design is: what it says of friction and place holds for its own object."""
+
 _STEPS = 9
 """Driving pressures among which a plan chooses."""
-
-_KEYS = ("object", "ball_radius_mm")
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ def _pressed(
 ) -> list[tuple[Array, Array]]:
     """Force and rise of a press at each driving pressure."""
     ball = {"contact.object": "ball", "contact.ball_radius_mm": 1.0 / curvature} if curvature else {}
-    own = {"contact.object": "plate", **ball, "pneumatics.driving_pressures_kPa": sorted(pressures_kPa)}
+    own = {**_CENTRAL, **ball, "pneumatics.driving_pressures_kPa": sorted(pressures_kPa)}
     evaluation = evaluate(design, {**(changes or {}), **own}, model="solid")
     curves = [curve_of(state, evaluation.sensor) for state in evaluation.prediction.states]
     rising = [np.r_[True, np.diff(curve.force) > 0.0] for curve in curves]
@@ -132,11 +135,6 @@ class Posterior:
     table: ObjectTable
     noise: float
     error: float
-
-    @property
-    def errors(self) -> tuple[float, float]:
-        """Noise and relative error."""
-        return self.noise, self.error
 
     @cached_property
     def _deviation(self) -> Array:
@@ -156,11 +154,9 @@ class Posterior:
         of forces are as likely before."""
         return weights_of(self.logs(readings), chosen)
 
-    def drawn(self, rises: Array, count: int, random: np.random.Generator) -> Array:
-        """Readings (count, k) of an object with rises (k,)."""
-        return np.asarray(
-            rises + np.hypot(self.noise, self.error * rises) * random.standard_normal((count, len(rises)))
-        )
+    def drawn(self, rises: Array, random: np.random.Generator) -> Array:
+        """Readings (k,) of an object with these rises, with their errors."""
+        return np.asarray(rises + np.hypot(self.noise, self.error * rises) * random.standard_normal(len(rises)))
 
 
 def weights_of(logs: Array, chosen: Sequence[int]) -> Array:
@@ -233,6 +229,7 @@ _ASSUMPTIONS = {
     "force": "the same at every driving pressure, as of a weight or of a finger that holds it",
     "errors": "of each reading independent: noise, and a share of the rise. An error that all readings share, such as "
     "that of a sensor without a calibration, moves the force by as much and is not in its interval",
+    "wall": "without relaxation and hysteresis: each reading is taken as long after its press",
     "before": "every curvature, and every logarithm of the force, is as likely",
 }
 
@@ -318,13 +315,15 @@ def _confusion(posterior: Posterior, bends: Sequence[float], chosen: Sequence[in
     rows = np.where(
         share > 0.0, (1.0 - share) * table.rise[:, low] + share * table.rise[:, low + 1], table.rise[:, low]
     )
-    only = Posterior(ObjectTable(table.pressures_kPa, np.asarray(bends), table.forces, rows), *posterior.errors)
+    only = Posterior(
+        ObjectTable(table.pressures_kPa, np.asarray(bends), table.forces, rows), posterior.noise, posterior.error
+    )
     counts = np.zeros((len(bends), len(bends)))
     for i, bend in enumerate(bends):
         reach = table.reach(bend)
         least = max(_LEAST * reach, float(table.forces[0]))
         for force in np.exp(random.uniform(math.log(least), math.log(reach), _DRAWS)):
-            (reading,) = posterior.drawn(table.at(bend, float(force)), 1, random)
+            reading = posterior.drawn(table.at(bend, float(force)), random)
             counts[i, int(only.of(reading, chosen).sum(axis=1).argmax())] += 1.0
     return tuple(tuple((row / _DRAWS).tolist()) for row in counts)
 

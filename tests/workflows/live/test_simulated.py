@@ -16,6 +16,7 @@ from pneutouch.workflows.live.planned import PlanRuns, RunSteps
 from pneutouch.workflows.live.recording import FreeCampaign
 from pneutouch.workflows.live.running import live_run
 from pneutouch.workflows.live.sensor import live_sensor
+from tests.conftest import ROOT
 from tests.running import in_process
 from tests.workflows.live.devices import wait_for
 from tests.workflows.live.test_session import read_rows
@@ -171,6 +172,16 @@ def test_recordings_without_a_plan_are_runs_of_a_campaign(sensor, tmp_path):
     assert error.value.file == str(folder / "campaign.toml")
     with pytest.raises(InputError):
         FreeCampaign(folder, "paper-dome", (), simulated=False).check()
+
+
+def test_a_design_given_by_its_path_is_copied_beside_its_recordings(tmp_path):
+    (tmp_path / "mine.toml").write_text((ROOT / "designs/paper-dome.toml").read_text())
+    words = ["live", "./mine.toml", "--port", "simulated:20", "--record", "rec", "--seconds", "40"]
+    assert in_process(words, tmp_path).returncode == 0
+    measured = in_process(["characterize", "rec", "--json"], tmp_path)
+    assert measured.returncode == 0, measured.stderr
+    assert in_process(words, tmp_path).returncode == 0
+    assert len(campaign_of(tmp_path / "rec")[0].runs) == 2
 
 
 @pytest.mark.slow

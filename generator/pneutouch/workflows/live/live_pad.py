@@ -12,7 +12,7 @@ from pneutouch.export.reader.pad_reading import PadForceReader
 from pneutouch.mechanics.touch.forward import PadModel
 from pneutouch.mechanics.touch.objects import answer_of, random_objects
 from pneutouch.results.plan import PlannedRun
-from pneutouch.spec.pad import PadCampaign, PadRun
+from pneutouch.spec.pad import PAD_CAMPAIGN, PadCampaign, PadRun
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
@@ -20,8 +20,6 @@ from pneutouch.workflows.live.readers import PadReader
 from pneutouch.workflows.live.recording import next_file
 from pneutouch.workflows.live.sensor import LiveSensor
 from pneutouch.workflows.live.simulated import RATE_HZ, DeviceRow, touches
-
-_CAMPAIGN = "pad-campaign.toml"
 
 
 @dataclass(frozen=True)
@@ -75,12 +73,14 @@ class PadRecordings:
 
     def check(self) -> None:
         """Raise InputError where the folder holds no campaign of a pad, or one of other runs."""
-        path = self.folder / _CAMPAIGN
+        path = self.folder / PAD_CAMPAIGN
         if not path.exists():
             raise InputError(
-                f"holds no {_CAMPAIGN}", file=self.folder, remedy=f"`pneutouch plan {self.pad}` writes one"
+                f"holds no {PAD_CAMPAIGN}", file=self.folder, remedy=f"`pneutouch plan {self.pad}` writes one"
             )
         known = validate(PadCampaign, read_toml(path), str(path))
+        if known.pad not in (self.pad, str(Path(self.pad).absolute())):
+            raise InputError(f"is of another pad than {self.pad}", file=path, key="pad", value=known.pad)
         if known.simulated != self.simulated:
             problem = f"is of {'simulated' if known.simulated else 'measured'} runs"
             raise InputError(problem, file=path, key="simulated", remedy="record into another folder")
@@ -92,5 +92,5 @@ class PadRecordings:
     def enter(self, file: Path, pressure_kPa: float | None) -> None:
         """Write the entry of a recording to the end of the campaign file."""
         run = PadRun(file=file.relative_to(self.folder).as_posix(), kind="hand")
-        with (self.folder / _CAMPAIGN).open("a", encoding="utf-8") as campaign:
+        with (self.folder / PAD_CAMPAIGN).open("a", encoding="utf-8") as campaign:
             campaign.write(f"\n{toml_text({'runs': [run.model_dump(mode='python')]})}")

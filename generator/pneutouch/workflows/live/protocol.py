@@ -68,13 +68,11 @@ class LineReader:
 
     Attributes:
         received: Number of bytes so far.
-        whole: Number of lines that were whole.
         damaged: Number of lines with a wrong checksum or content; the first one may begin in the middle.
         other: Beginning of what came last and is no line of this protocol.
     """
 
     received: int = 0
-    whole: int = 0
     damaged: int = 0
     other: bytes = b""
     _rest: bytes = field(default=b"", repr=False)
@@ -89,7 +87,6 @@ class LineReader:
         for line in lines:
             known = _parsed(line.removesuffix(b"\r"))
             if known is not None:
-                self.whole += 1
                 yield known
             elif self._begun and line.strip() and not line.startswith(COMMENT):
                 self.damaged += 1
@@ -194,7 +191,7 @@ class DeviceClock:
             self.said("the device was away" if self._was_away else "the device began anew: its counter went back")
             self._was_away = False
             seconds = max(waited_s, 1e-3 * self.usual_ms)
-        elif moved_ms > TURN / 2 or moved_ms > self._most(count, waited_s):
+        elif moved_ms > TURN / 2 or (moved_ms > _JUMP_MS and moved_ms > self._most(count, waited_s)):
             self.said("the clock of the device jumped: time goes on by its usual step")
             self.lost += count - 1
             seconds = 1e-3 * count * self.usual_ms

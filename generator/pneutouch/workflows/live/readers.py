@@ -102,32 +102,28 @@ class Tare:
 
     Attributes:
         status: Name of the status of the last tare; `TARING` while readings are collected.
+        held: True while they are collected until `finish`.
     """
 
     reader: LiveReader
     status: str = TARING
-    _held: bool = False
+    held: bool = False
     _rows: list[tuple[float, ...]] = field(default_factory=list)
     _seconds: float = 0.0
 
     def begin(self, *, held: bool = False) -> None:
         """Collect readings anew; ``held``: until `finish`."""
-        self.status, self._rows, self._seconds, self._held = TARING, [], 0.0, held
+        self.status, self._rows, self._seconds, self.held = TARING, [], 0.0, held
 
     def finish(self) -> str:
         """Take what was collected as zero; returns the status."""
-        self._held = False
+        self.held = False
         self.status, self._rows = (self.reader.tare(self._rows) if self._rows else Status.NOT_TARED.name), []
         return self.status
 
-    @property
-    def is_held(self) -> bool:
-        """True while readings are collected until `finish`."""
-        return self._held
-
     def forget(self) -> None:
         """Count the zero as unknown: the driving pressure changes."""
-        self.status, self._rows, self._held = Status.NOT_TARED.name, [], False
+        self.status, self._rows, self.held = Status.NOT_TARED.name, [], False
 
     @property
     def runs(self) -> bool:
@@ -143,6 +139,6 @@ class Tare:
         """Take a reading, ``seconds`` after the one before, and the tare once there are enough; returns the status."""
         self._rows.append(pressures_kPa)
         self._seconds += seconds
-        if not self._held and self._seconds >= TARE_S and len(self._rows) >= TARE_LEAST:
+        if not self.held and self._seconds >= TARE_S and len(self._rows) >= TARE_LEAST:
             return self.finish()
         return self.status

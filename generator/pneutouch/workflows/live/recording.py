@@ -4,16 +4,20 @@ import contextlib
 import math
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Protocol
 
+from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.formats import format_of
+from pneutouch.output.files import replace_file
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, campaign_of
+from pneutouch.spec.pad import channels
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.live.protocol import DeviceSample
+from pneutouch.workflows.simulate_inputs import named_design
 
 FLUSHED_S = 1.0
 """Seconds after which what was recorded is on the disk."""
@@ -37,7 +41,6 @@ class Recording:
     full: bool = False
     beside: tuple[bool, bool] = (False, False)
     seconds: float = 0.0
-    rows: int = 0
     _file: IO[str] | None = field(default=None, repr=False)
     _kept: list[int] = field(default_factory=list, repr=False)
     _flushed: float = field(default=0.0, repr=False)
@@ -67,13 +70,14 @@ class Recording:
         values = (sample.position_mm, sample.force_N, *sample.pressures_kPa)
         cells = ["" if math.isnan(values[k]) else f"{values[k]:.6g}" for k in self._kept]
         self._file.write(f"{self.seconds:.4f},{','.join(cells)}\n")
-        self.rows += 1
         now = time.monotonic()
         if now - self._flushed > FLUSHED_S:
             self.flush()
 
     def _begin(self, sample: DeviceSample) -> None:
-        names = ["position_mm", "force_N", *pressure_columns(len(sample.pressures_kPa))]
+        cells = len(sample.pressures_kPa)
+        pressures = ["pressure_kPa"] if cells == 1 else channels(cells)
+        names = ["position_mm", "force_N", *pressures]
         sent = (not math.isnan(sample.position_mm), not math.isnan(sample.force_N))
         beside = [k for k in range(2) if sent[k] or self.beside[k]]
         self._kept = [*beside, *range(2, len(names))]
@@ -120,17 +124,8 @@ def next_file(folder: Path) -> Path:
     return runs / f"live-{number}.csv"
 
 
-def pressure_columns(cells: int) -> list[str]:
-    """Names of the columns of pressure, in the order of the cells."""
-    return ["pressure_kPa"] if cells == 1 else [f"pressure_{k}_kPa" for k in range(1, cells + 1)]
-
-
 class Recordings(Protocol):
     """A campaign that recordings are added to."""
-
-    @property
-    def folder(self) -> Path:
-        """Its folder."""
 
     def check(self) -> None:
         """Raise InputError if nothing can be added to it."""
@@ -144,12 +139,21 @@ class Recordings(Protocol):
 
 @dataclass(frozen=True)
 class FreeCampaign:
-    """A campaign of runs that no plan has, in a folder: of ``design`` with ``assignments``, ``simulated`` or not."""
+    """A campaign of runs that no plan has, in a folder: of ``design`` with ``assignments``, ``simulated`` or not.
+
+    ``copied`` are the files that the campaign's design needs beside it, by name."""
 
     folder: Path
     design: str
     assignments: Sequence[str] = ()
     simulated: bool = False
+    copied: Mapping[str, bytes] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, folder: Path, design: str, assignments: Sequence[str], simulated: bool) -> "FreeCampaign":
+        """The campaign of a design by its name or path; the file of a path is copied beside it. Raises InputError."""
+        name, copied = named_design(design, Library.default())
+        return cls(folder, name, assignments, simulated, copied)
 
     def check(self) -> None:
         """Raise InputError if the folder holds a campaign of another design, or one that cannot be read."""
@@ -189,5 +193,8 @@ class FreeCampaign:
             "simulated": self.simulated,
         }
         text = "" if path.exists() else toml_text(head)
+        for other, content in self.copied.items():
+            if not (self.folder / other).exists():
+                replace_file(self.folder / other, content)
         with path.open("a", encoding="utf-8") as campaign:
             campaign.write(f"{text}\n{toml_text({'runs': [entry]})}")

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pneutouch.errors import ComputationError, InputError, shown
-from pneutouch.results.live import LiveRecord, LiveState
+from pneutouch.errors import InputError, shown
+from pneutouch.results.live import LiveRecord
 from pneutouch.results.plan import PlannedRun
 from pneutouch.workflows.live.planned import PlanRuns, RunSteps
 from pneutouch.workflows.live.port import BAUD, PortThread
@@ -83,7 +83,7 @@ class LiveRun:
     def advance(self) -> bool:
         """Begin what is to be recorded when its time has come; True when the run of a plan is complete, which ends it.
 
-        Raises OSError if the recording could not be written, and ComputationError if the link was lost for good."""
+        Raises OSError if the recording could not be written."""
         if self.session.failure is not None:
             failure, self.session.failure = self.session.failure, None
             raise failure
@@ -118,13 +118,12 @@ class LiveRun:
 
     def record(self) -> LiveRecord:
         """The record of what was read, now."""
-        state: LiveState = self.session.state
         greatest_N = self.session.greatest_force_N
         return LiveRecord(
             design=self.sensor.name,
             port=self.port,
             seconds=self.session.seconds,
-            state=state,
+            state=self.session.state,
             greatest_force_N=greatest_N if greatest_N == greatest_N else None,
             file=None if self.file is None else str(self.file),
         )
@@ -156,9 +155,3 @@ def live_run(
     finally:
         if device is not None:
             device.close()
-
-
-def lost_for_good(running: LiveRun, seconds: float) -> None:
-    """Raise ComputationError: the device is gone for so long."""
-    where = "" if running.file is None else f"; what was recorded is in {running.file}"
-    raise ComputationError(f"the device at {running.port} did not come back in {seconds:g} s{where}")

@@ -1,4 +1,4 @@
-"""A live session: samples of a device become readings, and a recording; what happens on the way is said."""
+"""A live session: samples of a device become readings, and a recording; events are noted."""
 
 import math
 import threading
@@ -112,7 +112,7 @@ class LiveSession:
         """Take the zero anew while the run's rest ends; its driving pressure was set again."""
         if is_due and not self._tare.runs:
             self._tare.begin(held=True)
-        elif not is_due and self._tare.is_held:
+        elif not is_due and self._tare.held:
             self._status = self._tare.finish()
 
     def _read(self, sample: DeviceSample) -> LiveReading:
@@ -209,7 +209,7 @@ class LiveSession:
         anew where ``zero`` is true; until then it is unknown."""
         with self._lock:
             self._step, self._zero = step, zero
-            if zero is not None or self._tare.is_held:
+            if zero is not None or self._tare.held:
                 self._tare.forget()
 
     def plugged(self, is_plugged: bool) -> None:
@@ -254,7 +254,7 @@ class LiveSession:
                 device=None if self._device is None else self._device.name,
                 link=self.link,
                 status=self._status or "NOT_TARED",
-                driving_pressures_kPa=tuple(known[:-2]),
+                driving_pressures_kPa=tuple(known[:-2]) if self._tare.is_read else (None,) * len(zeros),
                 noise_kPa=known[-2] if self._tare.is_read else None,
                 drift_kPa=known[-1] if self._tare.is_read else None,
                 rate_Hz=self._clock.rate_Hz,

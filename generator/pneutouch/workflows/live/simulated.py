@@ -104,7 +104,7 @@ class SimulatedDevice:
         self.port = os.ttyname(slave)
         self._slave = slave
         os.set_blocking(self._master, False)
-        self._number, self._skipped = 0, 0
+        self._number = 0
         self._lock, self._ended = threading.Lock(), threading.Event()
         self._began, self._day = time.monotonic(), time.time()
         self._thread = threading.Thread(target=self._work, daemon=True)

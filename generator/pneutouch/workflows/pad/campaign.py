@@ -14,7 +14,7 @@ from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
 from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.pages import filled
-from pneutouch.spec.pad import PadCampaign, PadRun
+from pneutouch.spec.pad import PAD_CAMPAIGN, PadCampaign, PadRun, channels
 from pneutouch.spec.read import Changes
 from pneutouch.spec.toml_text import assignments, toml_text
 from pneutouch.tables.csv_table import columns_csv
@@ -23,7 +23,6 @@ from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.touch import Tabulate, pad_model, pad_pressure_kPa
 
-CAMPAIGN = "pad-campaign.toml"
 _BALL, _DEPTHS, _NEAR, _ASIDE, _TURN = 2.0, (0.4, 0.7, 0.95), 1.05, 0.5, 2.4
 """Radius of the planned ball over the domes' inner radius, shares of the travel in contact, distance over the least one
 at which two cells are neighbours, between which the ball is pressed too, distance from a cell's axis over that radius,
@@ -85,8 +84,8 @@ def write_pad_plan(plan: PadPlan, out: Path, changes: Changes | None = None) -> 
         "force_N": plan.answer.force,
         **dict(zip(channels(count), plan.answer.rise.T / KPA, strict=True)),
     }
-    sheet = filled("pad_plan.md.j2", plan=plan, campaign=campaign, channels=channels(count), file=CAMPAIGN)
-    files = {"plan.md": sheet.encode(), "presses.csv": columns_csv(expected), CAMPAIGN: _text(campaign)}
+    sheet = filled("pad_plan.md.j2", plan=plan, campaign=campaign, channels=channels(count), file=PAD_CAMPAIGN)
+    files = {"plan.md": sheet.encode(), "presses.csv": columns_csv(expected), PAD_CAMPAIGN: _text(campaign)}
     return write_folder(out / name, with_manifest(files, name, inputs(plan.pad)))
 
 
@@ -101,7 +100,7 @@ def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = 
     )
     by_hand = random_objects(plan.model, "ball", _BY_HAND, random)
     by_hand[:, 2] = plan.model.table.radius / plan.radius
-    files = {CAMPAIGN: _text(campaign)}
+    files = {PAD_CAMPAIGN: _text(campaign)}
     for run, presses in zip(campaign.runs, (plan.presses + shift, by_hand[:, [0, 1, 3]]), strict=True):
         answer = plan.model.under_balls(presses[:, :2], np.full(len(presses), plan.radius), presses[:, 2])
         held = answer.inside
@@ -120,11 +119,6 @@ def simulate_pad(plan: PadPlan, out: Path, seed: int, changes: Changes | None = 
     truth = {"force_factor": force, "rise_factors": rises, "stage_zero_mm": shift.tolist(), "seed": seed}
     files["pad-truth.json"] = json_bytes(versioned("pad-truth", truth))
     return write_folder(out / name, with_manifest(files, name, {**inputs(plan.pad), "seed": seed}))
-
-
-def channels(count: int) -> list[str]:
-    """Names of the columns of pressure, kPa, in the order of the cells."""
-    return [f"pressure_{k}_kPa" for k in range(1, count + 1)]
 
 
 def noise_kPa(pad: ResolvedPad) -> float:

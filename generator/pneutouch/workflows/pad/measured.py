@@ -14,11 +14,11 @@ from pneutouch.mechanics.touch.objects import random_objects
 from pneutouch.mechanics.touch.reader_table import reader_table
 from pneutouch.output.files import digest
 from pneutouch.spec.files import is_file
-from pneutouch.spec.pad import PadCalibration, PadCampaign, PadRun
+from pneutouch.spec.pad import PAD_CAMPAIGN, PadCalibration, PadCampaign, PadRun, channels
 from pneutouch.spec.read import parse_changes, read_toml, validate
 from pneutouch.tables.read import whole
 from pneutouch.units import KPA
-from pneutouch.workflows.pad.campaign import CAMPAIGN, channels, noise_kPa
+from pneutouch.workflows.pad.campaign import noise_kPa
 from pneutouch.workflows.pad.fault import PadFault, find_fault
 from pneutouch.workflows.pad.load import ResolvedPad, load_pad
 from pneutouch.workflows.pad.touch import Tabulate, pad_model
@@ -81,12 +81,12 @@ class PadFit(NamedTuple):
 
 def is_pad_campaign(path: Path) -> bool:
     """True for the folder of a pad's campaign, or its file."""
-    return path.name == CAMPAIGN or is_file(path / CAMPAIGN)
+    return path.name == PAD_CAMPAIGN or is_file(path / PAD_CAMPAIGN)
 
 
 def read_campaign(path: Path, made_by: Tabulate | None = None) -> MeasuredPad:
     """The campaign of a folder, or of its file. Raises InputError for what cannot be read or is not of this pad."""
-    file = path if path.name == CAMPAIGN else path / CAMPAIGN
+    file = path if path.name == PAD_CAMPAIGN else path / PAD_CAMPAIGN
     campaign: PadCampaign = validate(PadCampaign, read_toml(file), str(file))
     pad = load_pad(campaign.pad, parse_changes(campaign.assignments))
     model = pad_model(pad, campaign.driving_pressure_kPa, made_by)
@@ -172,7 +172,7 @@ def _check_order(measured: MeasuredPad) -> None:
         names = channels(len(order))
         pairs = ", ".join(f"{names[k]} reads cell {order[k] + 1}" for k in wrong)
         remedy = "give each column the number of the cell that it reads"
-        raise InputError(f"swapped: {pairs}", file=measured.folder / CAMPAIGN, key=names[wrong[0]], remedy=remedy)
+        raise InputError(f"swapped: {pairs}", file=measured.folder / PAD_CAMPAIGN, key=names[wrong[0]], remedy=remedy)
 
 
 def _correlations(one: Array, other: Array) -> Array:
@@ -191,13 +191,13 @@ def _check_fault(measured: MeasuredPad, silent: Indices) -> None:
         names = [channels(len(measured.model.places))[k - 1] for k in fault.cells]
         problem = "the cell leaks or is clogged" if fault.kind == "lost" else f"swapped with {names[-1]}"
         remedy = "mend it, or leave it out of the reader" if fault.kind == "lost" else "exchange the two columns"
-        raise InputError(problem, file=measured.folder / CAMPAIGN, key=names[0], remedy=remedy)
+        raise InputError(problem, file=measured.folder / PAD_CAMPAIGN, key=names[0], remedy=remedy)
 
 
 def _check_sizes(measured: MeasuredPad, force: float, rise: float, rise_error: float) -> None:
     """Raise InputError for forces or rises so far from the predicted ones that they are not those of this pad, or of
     which the prediction leaves most unexplained."""
-    file, first = measured.folder / CAMPAIGN, channels(1)[0]
+    file, first = measured.folder / PAD_CAMPAIGN, channels(1)[0]
     for key, factor, unit in (("force_N", force, "N"), (first, rise, "kPa")):
         if not 1.0 / _FARTHEST < factor < _FARTHEST:
             problem = f"{factor:.3g} times what is predicted, in every cell"
