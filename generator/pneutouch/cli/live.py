@@ -181,6 +181,10 @@ def _report_next(planned: "PlanRuns | None", record: Path | None, words: Sequenc
     """Name the next command: the next run of the plan, or the evaluation."""
     if json:
         return
+    by_hand = () if planned is None else planned.by_hand
+    if by_hand:
+        files = ", ".join(str(file) for file in by_hand)
+        notify(f"note: to be read by hand, with the columns volume_mL and pressure_kPa: {files}")
     if planned is not None and planned.open:
         report_next("live", *words, "--plan", planned.folder)
     elif planned is not None or record is not None:

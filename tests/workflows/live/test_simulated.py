@@ -174,6 +174,20 @@ def test_recordings_without_a_plan_are_runs_of_a_campaign(sensor, tmp_path):
         FreeCampaign(folder, "paper-dome", (), simulated=False).check()
 
 
+def test_a_run_whose_range_ends_early_goes_on_untouched_to_its_planned_end(tmp_path):
+    """Without that the touches of a device that is left alone would be presses of the run."""
+    words = ["plan", "fingertip-dome", "--specimens", "1", "--set", AT, "--out", str(tmp_path)]
+    assert in_process(words, tmp_path).returncode == 0
+    runs = PlanRuns.of(tmp_path / "fingertip-dome-plan")
+    one = next(run for run in runs.recordable if run.kind == "saturation" and run.driving_pressure_kPa == 12.0)
+    planned = sum(step.action == "move" and step.value > 0.0 for step in one.steps)
+    rows = np.array(list(live_sensor("fingertip-dome").rig(12.0).run(one)))
+    presses = int((np.diff(np.r_[False, rows[:, 0] > 0.0].astype(int)) == 1).sum())
+    assert 3 < presses < planned
+    assert len(rows) >= 100 * RunSteps(one).seconds
+    assert np.isfinite(rows).all() and abs(rows[-1, 2] - 12.0) < 0.5
+
+
 def test_a_design_given_by_its_path_is_copied_beside_its_recordings(tmp_path):
     (tmp_path / "mine.toml").write_text((ROOT / "designs/paper-dome.toml").read_text())
     words = ["live", "./mine.toml", "--port", "simulated:20", "--record", "rec", "--seconds", "40"]

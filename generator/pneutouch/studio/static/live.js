@@ -228,7 +228,7 @@ class LivePage {
     if (rises) put("pressure", short(Math.max(...rises), 3), "greatest pressure rise, kPa");
     else put("pressure", pressures.length ? pressures.map((one) => (one === null ? "–" : one.toFixed(2))).join(", ") : "–", "pressure, kPa");
     const [least, most] = [Math.min(...zeros), Math.max(...zeros)].map((one) => one.toFixed(2));
-    put("zero", zeros.length ? (least === most ? least : `${least} to ${most}`) : "–", state.drift_kPa ? `without contact, kPa; ${state.drift_kPa.toFixed(3)} since the tare` : "without contact, kPa");
+    put("zero", zeros.length ? (least === most ? least : `${least} to ${most}`) : "–", state.drift_kPa ? `without contact, kPa; ${(Math.round(1e3 * state.drift_kPa) / 1e3 + 0).toFixed(3)} since the tare` : "without contact, kPa");
     put("samples", state.rate_Hz ? `${short(state.rate_Hz, 3)} Hz` : "–", `${state.samples ?? 0} samples, ${state.lost ?? 0} lost, ${state.damaged ?? 0} damaged`);
     const delay = this.made ? Math.max(0, performance.timeOrigin + performance.now() - 1e3 * this.made) : null;
     if (delay !== null) put("delay", `${Math.round(delay)} ms`, "from sample to screen");

@@ -86,6 +86,12 @@ class PlanRuns:
         """Runs that have no file yet, in order."""
         return tuple(run for run in self.recordable if not (self.folder / run.file).exists())
 
+    @property
+    def by_hand(self) -> tuple[Path, ...]:
+        """Files that are still to be written by hand."""
+        files = (self.folder / run.file for run in self.runs if run.kind in BY_HAND)
+        return tuple(file for file in files if not file.exists())
+
     def chosen(self, number: int | None) -> PlannedRun:
         """The run of a number, else the first that has no file. Raises InputError where there is none."""
         if number is None:

@@ -71,14 +71,22 @@ class SimulatedRig:
             yield from zip(travel.tolist(), pressed.tolist(), (read / KPA).tolist(), strict=True)
 
     def run(self, run: PlannedRun) -> Iterator[DeviceRow]:
-        """Rows of a run of a plan, from where its record begins."""
+        """Rows of a run of a plan from where its record begins to its planned end. Where the range ends before a depth,
+        the object stays away for the rest of the run."""
         random, rig = np.random.default_rng([self._seed, run.number]), replace(self._rig, missed=0.0)
         if run.kind == "leak":
             record = simulate_leak(self._curve.driving, run.steps[-1].seconds, rig, self._rate, random)
         else:
             record = simulate_run(self._curve, self._protocol(run.kind), rig, self._rate, random)
+        begun = next(k for k, step in enumerate(run.steps) if step.action == "record")
+        planned = round(sum(step.seconds for step in run.steps[begun:]) * self._rate) + 1
+        rest = simulate_leak(
+            self._curve.driving, max(planned - record.time.size, 0) / self._rate, rig, self._rate, random
+        )
         columns = record.position, record.force, record.pressure / KPA
         yield from zip(*(one.tolist() for one in columns), strict=True)
+        for force, pressure_kPa in zip(rest.force.tolist(), (rest.pressure / KPA).tolist(), strict=True):
+            yield -CLEARANCE, force, pressure_kPa
 
 
 def touches(reach: float, rate: float, random: np.random.Generator) -> Iterator[Array]:
