@@ -174,11 +174,11 @@ def test_a_tare_by_hand_during_a_run_is_whole_and_one_of_the_run_ends_with_it(tm
     assert session.tared and session.state.status == "OK"
     session.walk(lambda seconds: ("wait", 1.0), lambda seconds: True)
     session.take(rest(20, 422))
-    assert session.tare_runs
+    assert session.state.status == "TARING"
     session.stop_recording().close()
     session.walk(None)
     session.take(rest(20, 442))
-    assert not session.tare_runs and not session.tared
+    assert session.state.status == "NOT_TARED" and not session.tared
 
 
 def test_a_disk_that_is_full_as_the_device_is_pulled_ends_the_recording_alone(tmp_path):

@@ -250,10 +250,15 @@ class LivePage {
     }
     charts.show("live-force", "time, s", "force, N", lines, data, { bands: [{ series: [2, 3], fill: colour("band") }] });
     const cells = rows.at(-1).length - 4;
+    const zeros = this.state.driving_pressures_kPa ?? [null];
     const pressures = Array.from({ length: cells }, (_, k) => charts.series(cells > 1 ? `cell ${k + 1}` : "pressure", charts.tone(k), { dash: charts.dashes(k) }));
-    const zero = this.state.driving_pressures_kPa?.[0] ?? null;
-    pressures.push(charts.series("without contact", colour("ink"), { width: 1, dash: [6, 4] }));
-    charts.show("live-pressure", "time, s", "pressure, kPa", pressures, [times, ...Array.from({ length: cells }, (_, k) => column((row) => row[4 + k])), column(() => zero)]);
+    // The rises of a pad's cells are small beside their driving pressure.
+    const read = pressures.map((_, k) => column((row) => (cells === 1 ? row[4] : row[4 + k] === null || zeros[k] === null ? null : row[4 + k] - zeros[k])));
+    if (cells === 1) {
+      pressures.push(charts.series("without contact", colour("ink"), { width: 1, dash: [6, 4] }));
+      read.push(column(() => zeros[0]));
+    }
+    charts.show("live-pressure", "time, s", cells > 1 ? "pressure rise, kPa" : "pressure, kPa", pressures, [times, ...read]);
   }
 
   fault(problems) {

@@ -75,11 +75,8 @@ class PadReader:
         """Take readings without contact as zero; returns the name of the status."""
         if not all(math.isfinite(one_kPa) for row_kPa in readings_kPa for one_kPa in row_kPa):
             return Status.NOT_A_NUMBER.name
-        cells_kPa = list(zip(*readings_kPa, strict=True))
-        if (
-            max(max(cell_kPa) - min(cell_kPa) for cell_kPa in cells_kPa)
-            > _PAD_UNSTEADY * self._reader.table["touched_kPa"]
-        ):
+        ranges_kPa = [max(cell_kPa) - min(cell_kPa) for cell_kPa in zip(*readings_kPa, strict=True)]
+        if max(ranges_kPa) > _PAD_UNSTEADY * self._reader.table["touched_kPa"]:
             return Status.UNSTEADY_TARE.name
         self._reader.tare(readings_kPa)
         return Status.OK.name

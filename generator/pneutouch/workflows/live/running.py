@@ -5,13 +5,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pneutouch.bench.simulate.rig import MARK
 from pneutouch.errors import InputError, shown
 from pneutouch.results.live import LiveRecord
 from pneutouch.results.plan import PlannedRun
 from pneutouch.workflows.live.planned import PlanRuns, RunSteps
 from pneutouch.workflows.live.port import BAUD, PortThread
 from pneutouch.workflows.live.recording import Recording, Recordings
-from pneutouch.workflows.live.sensor import LiveSensor, faster_of, mark_of
+from pneutouch.workflows.live.sensor import LiveSensor, faster_of
 from pneutouch.workflows.live.session import LiveSession
 from pneutouch.workflows.live.simulated import SimulatedDevice
 
@@ -24,6 +25,8 @@ class LiveRun:
 
     def __init__(self, sensor: LiveSensor, port: str, session: LiveSession, device: SimulatedDevice | None) -> None:
         self.sensor, self.port, self.session, self.device = sensor, port, session, device
+        # Simulated files are marked.
+        self._mark = "" if device is None else MARK
         self._campaign: Recordings | None = None
         self._pending: tuple[Recording, RunSteps, float] | None = None
         self._steps: RunSteps | None = None
@@ -46,7 +49,7 @@ class LiveRun:
     def record_run(self, plan: PlanRuns, run: PlannedRun) -> None:
         """Record a run of a plan into its file. Raises InputError if it is there."""
         steps = RunSteps(run)
-        recording = Recording(plan.folder / run.file, mark_of(self.port), steps.seconds)
+        recording = Recording(plan.folder / run.file, self._mark, steps.seconds)
         plan.check_design(self.sensor.name)
         recording.check()
         rig = None if self.device is None else self.sensor.rig(run.driving_pressure_kPa)
@@ -78,7 +81,7 @@ class LiveRun:
         campaign.check()
         self.stop()
         self._campaign, self._steps, self._at_kPa = campaign, None, self._zero_kPa()
-        self._record(Recording(campaign.next_file(), mark_of(self.port)), None)
+        self._record(Recording(campaign.next_file(), self._mark), None)
 
     def advance(self) -> bool:
         """Begin what is to be recorded when its time has come; True when the run of a plan is complete, which ends it.

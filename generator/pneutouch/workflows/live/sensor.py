@@ -6,7 +6,6 @@ from typing import Protocol
 
 from pneutouch.bench.indents import protocol
 from pneutouch.bench.simulate.curve import stopped
-from pneutouch.bench.simulate.rig import MARK
 from pneutouch.bench.simulate.runs import SimulationTruth, within
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
@@ -89,8 +88,3 @@ def faster_of(port: str) -> float | None:
         problem = f"must be a number from 1 to {_FASTEST:g} after the colon"
         raise InputError(problem, key="port", value=port, remedy="such as simulated:20, or simulated alone")
     return faster
-
-
-def mark_of(port: str) -> str:
-    """First line of what is recorded from a port: simulated files are marked."""
-    return MARK if faster_of(port) is not None else ""

@@ -171,11 +171,6 @@ class LiveSession:
         """True if there is a zero."""
         return self._tare.is_read
 
-    @property
-    def tare_runs(self) -> bool:
-        """True while the zero is taken."""
-        return self._tare.runs
-
     def record(self, recording: Recording, first: int | None = None) -> None:
         """Record from the next sample on, or from that of the device's number ``first``. Raises InputError as
         `Recording.check`."""
