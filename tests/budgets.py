@@ -123,7 +123,7 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 95_692, 70_000),
+    Budget("lines of the package", package_lines, 95_685, 70_000),
     Budget("files of the package", package_files, 510, 450),
     Budget("lines of benchmarks", benchmark_lines, 7_711, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),

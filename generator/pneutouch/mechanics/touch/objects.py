@@ -1,5 +1,7 @@
 """Objects that touch a pad, by their parameters, and random ones within its range."""
 
+import math
+
 import numpy as np
 
 from pneutouch.arrays import Array
@@ -7,6 +9,9 @@ from pneutouch.mechanics.touch.cell import TILTS
 from pneutouch.mechanics.touch.forward import ObjectKind, PadAnswer, PadModel
 
 KINDS: tuple[ObjectKind, ...] = ("ball", "plate", "cylinder")
+
+_BALL = 2.0
+"""Radius of the ball that pads are measured with over the domes' inner radius: our choice."""
 
 
 def answer_of(model: PadModel, kind: ObjectKind, parameters: Array) -> PadAnswer:
@@ -19,6 +24,11 @@ def answer_of(model: PadModel, kind: ObjectKind, parameters: Array) -> PadAnswer
     radius = model.table.radius / np.clip(parameters[:, 2], high, low)
     under = model.under_cylinders if kind == "cylinder" else model.under_balls
     return under(parameters[:, :2], radius, parameters[:, 3])
+
+
+def usual_ball(model: PadModel) -> float:
+    """Radius, mm, of the ball that a pad is measured with: whole halves of a millimetre, within the tables."""
+    return max(0.5, round(2.0 * _BALL * model.table.radius) / 2.0, 0.5 * math.ceil(2.0 * model.radii[0]))
 
 
 def random_objects(model: PadModel, kind: ObjectKind, count: int, random: np.random.Generator) -> Array:

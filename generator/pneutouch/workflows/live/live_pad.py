@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.errors import InputError
 from pneutouch.export.reader.pad_reading import PadForceReader
 from pneutouch.mechanics.touch.forward import PadModel
-from pneutouch.mechanics.touch.objects import answer_of, random_objects
+from pneutouch.mechanics.touch.objects import answer_of, random_objects, usual_ball
 from pneutouch.results.plan import PlannedRun
 from pneutouch.spec.pad import PAD_CAMPAIGN, PadCampaign, PadRun
 from pneutouch.spec.read import read_toml, validate
@@ -32,10 +32,11 @@ class PadRig:
     seed: int = 0
 
     def idle(self) -> Iterator[DeviceRow]:
-        """Rows without end: balls touch the pad now and then, each at another place."""
+        """Rows without end: the ball of the pad's plan touches it now and then, each time at another place."""
         random, rest_kPa = np.random.default_rng(self.seed), self.model.of_cells("driving_pressure") / KPA
         for share in touches(1.0, self.rate, random):
             (ball,) = random_objects(self.model, "ball", 1, random)
+            ball[2] = self.model.table.radius / usual_ball(self.model)
             rows = np.tile(ball, (len(share), 1))
             rows[:, 3] *= np.maximum(share, 0.0) / share.max()
             answer = answer_of(self.model, "ball", rows)

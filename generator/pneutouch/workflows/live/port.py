@@ -4,7 +4,7 @@ import contextlib
 import termios
 import threading
 import time
-from typing import Any, Protocol
+from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.workflows.live.session import LiveSession
@@ -17,16 +17,6 @@ _WAIT_S, _AGAIN_S, _ASK_S = 0.02, 0.5, 1.0
 
 _FAULTS = (OSError, termios.error)
 """Errors of a port whose device goes away; those of the terminal are none of the system's in Python."""
-
-
-class _Serial(Protocol):
-    in_waiting: int
-
-    def read(self, size: int) -> bytes: ...
-
-    def write(self, data: bytes) -> int: ...
-
-    def close(self) -> None: ...
 
 
 def _pyserial() -> Any:
@@ -46,11 +36,11 @@ def ports() -> list[str]:
     return sorted(one.device for one in listed if one.vid is not None or "USB" in one.device or "ACM" in one.device)
 
 
-def open_port(name: str, baud: int = BAUD) -> _Serial:
+def open_port(name: str, baud: int = BAUD) -> Any:
     """Open a port for this process alone. Raises InputError for one that is not there, busy, or not to be opened."""
     serial = _pyserial()
     try:
-        opened: _Serial = serial.Serial(name, baud, timeout=_WAIT_S, write_timeout=1.0, exclusive=True)
+        return serial.Serial(name, baud, timeout=_WAIT_S, write_timeout=1.0, exclusive=True)
     except (*_FAULTS, ValueError) as error:
         known = ", ".join([*ports(), "simulated"])
         words = str(error).lower()
@@ -60,7 +50,6 @@ def open_port(name: str, baud: int = BAUD) -> _Serial:
         elif "no such file" in words or "could not find" in words:
             problem = "is not there"
         raise InputError(problem, key="port", value=name, remedy=f"{use}: {known}") from None
-    return opened
 
 
 class PortThread:
@@ -69,7 +58,7 @@ class PortThread:
     def __init__(self, session: LiveSession, name: str, baud: int = BAUD) -> None:
         """Open the port and begin. Raises InputError as `open_port`."""
         self._session, self._name, self._baud = session, name, baud
-        self._serial: _Serial | None = open_port(name, baud)
+        self._serial: Any = open_port(name, baud)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()

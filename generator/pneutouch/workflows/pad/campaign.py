@@ -1,6 +1,5 @@
 """Plan of a pad's measurement, balls pressed at a raster of places, and the campaign that simulated rigs make of it."""
 
-import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +10,7 @@ from pneutouch.evaluation.gauge import reading_of
 from pneutouch.formats import versioned
 from pneutouch.mechanics.gauge_reading import PAPER_NOISE
 from pneutouch.mechanics.touch.forward import PadAnswer, PadModel
-from pneutouch.mechanics.touch.objects import random_objects
+from pneutouch.mechanics.touch.objects import random_objects, usual_ball
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.pages import filled
 from pneutouch.spec.pad import PAD_CAMPAIGN, PadCampaign, PadRun, channels
@@ -23,10 +22,9 @@ from pneutouch.workflows.pad.build_pad import inputs
 from pneutouch.workflows.pad.load import ResolvedPad
 from pneutouch.workflows.pad.touch import Tabulate, pad_model, pad_pressure_kPa
 
-_BALL, _DEPTHS, _NEAR, _ASIDE, _TURN = 2.0, (0.4, 0.7, 0.95), 1.05, 0.5, 2.4
-"""Radius of the planned ball over the domes' inner radius, shares of the travel in contact, distance over the least one
-at which two cells are neighbours, between which the ball is pressed too, distance from a cell's axis over that radius,
-and turn from one press to the next, rad: our choice."""
+_DEPTHS, _NEAR, _ASIDE, _TURN = (0.4, 0.7, 0.95), 1.05, 0.5, 2.4
+"""Shares of the travel in contact; distance over the least one at which two cells are neighbours, between which the
+ball is pressed too; distance from a cell's axis over its radius; turn from press to press, rad: our choice."""
 _RESTS, _BY_HAND = 5, 40
 """Readings without contact before each place, and presses by hand of a simulated campaign."""
 _SCATTER = {"force": 0.1, "rise": 0.03, "place_mm": 0.3}
@@ -55,8 +53,7 @@ def plan_pad(pad: ResolvedPad, made_by: Tabulate | None = None) -> PadPlan:
 
     Raises InputError as `pad_model` does."""
     model = pad_model(pad, pad_pressure_kPa(pad), made_by)
-    least = 0.5 * math.ceil(2.0 * model.radii[0])
-    radius, places = max(0.5, round(2.0 * _BALL * model.table.radius) / 2.0, least), model.places
+    radius, places = usual_ball(model), model.places
     apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1)) + np.diag(np.full(len(places), np.inf))
     pairs = [(j, k) for j, k in np.argwhere(apart <= _NEAR * apart.min()) if j < k]
     turns = _TURN * np.arange(len(_DEPTHS) * len(places)).reshape(-1, len(_DEPTHS))
