@@ -134,7 +134,7 @@ def test_samples_within_one_tick_of_the_clock_follow_one_another(rate_Hz, count)
     ticks = [int(1e3 * k / rate_Hz + rng.uniform(0.0, 0.9)) for k in range(count)]
     seconds, clock, told = clocked([(k, ticks[k], 1e-3) for k in range(1, count)], first=(0, 0))
     assert not told and min(seconds) > 0.0
-    assert clock.seconds == pytest.approx(count / rate_Hz, rel=0.01) and clock.rate_Hz == pytest.approx(
+    assert clock.seconds == pytest.approx(count / rate_Hz, rel=0.001) and clock.rate_Hz == pytest.approx(
         rate_Hz, rel=0.1
     )
 

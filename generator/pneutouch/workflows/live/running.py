@@ -117,7 +117,7 @@ class LiveRun:
 
     def _zero_kPa(self) -> float | None:
         """Driving pressure by the zero; None before a tare."""
-        return self.session.state.driving_pressures_kPa[0] if self.session.tared else None
+        return self.session.state.driving_pressures_kPa[0]
 
     def record(self) -> LiveRecord:
         """The record of what was read, now."""
