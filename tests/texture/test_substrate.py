@@ -7,18 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.texture.substrate import (
-    FIRST_ZERO,
-    BarRow,
-    MatrixLayer,
-    Substrate,
-    amplitude,
-    bonded_layer,
-    contrast,
-    half_space,
-    patch_filter,
-    reaching,
-)
+from pneutouch.mechanics.soft.layer import bonded_layer, half_space, reaching
+from pneutouch.texture.substrate import FIRST_ZERO, BarRow, MatrixLayer, Substrate, amplitude, contrast, patch_filter
 
 MU = 0.206
 MATRIX = MatrixLayer(8.0, MU, 0.49)

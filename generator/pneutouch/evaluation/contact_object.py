@@ -21,6 +21,7 @@ from pneutouch.units import ML
 from pneutouch.wording import data_of
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.soft.body import SoftBody
     from pneutouch.mechanics.solid.indenter import RigidObject
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
     from pneutouch.parts import Assembly
@@ -60,6 +61,18 @@ def contact_object(scene: ResolvedDesign) -> "RigidObject | None":
         raise InputError(str(error), file=scene.where, key=key, value=value) from None
 
 
+def soft_object(scene: ResolvedDesign) -> "SoftBody | None":
+    """What the object of a design is made of; None for a rigid one."""
+    contact = scene.design.contact
+    if contact.object_modulus_MPa is None:
+        return None
+    from pneutouch.mechanics.soft.body import SoftBody
+
+    return SoftBody(
+        contact.object_modulus_MPa, contact.object_poisson_ratio, contact.object_thickness_mm, contact.ball_radius_mm
+    )
+
+
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     """The entry ``contact`` of a document: the pressing object by the keys of ``[contact]``; empty for a frictionless
     plate with its usual rim. A surface that grips has the friction "inf"."""
@@ -70,7 +83,14 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     friction = contact.model_dump(mode="json")["friction"]
     sizes = {key: size for key, size in plate.items() if size is not None} if contact.is_plate else contact.sizes()
     return {
-        "contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction, **contact.off_axis}
+        "contact": {
+            "object": contact.object,
+            "label": contact.label,
+            **sizes,
+            **contact.softness,
+            "friction": friction,
+            **contact.off_axis,
+        }
     }
 
 

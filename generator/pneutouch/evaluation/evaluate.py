@@ -21,6 +21,7 @@ from pneutouch.evaluation.contact_object import (
     contact_object,
     fillings_of,
     rigid_base,
+    soft_object,
 )
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
@@ -308,6 +309,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         steps=design.indentation.steps,
         waves=design.indentation.checked_waves,
         body=contact_object(assembly.scene),
+        soft=soft_object(assembly.scene),
         plate_rim=design.contact.plate_rim_mm,
         friction=design.contact.friction,
         offset=design.contact.offset_mm,

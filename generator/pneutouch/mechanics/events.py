@@ -41,6 +41,7 @@ class SolidEvent:
     jump at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the body behind it; a
     solid with a base continues). Kinds that do not: rim (the object meets the flange or a ring beside the wall),
     base (the outer wall lies down next to its clamp), separation (the wall leaves the plate inside the contact),
+    strained (a soft object, beyond linear elasticity),
     crease, overhang (the wall hangs below its base plane where the solid has no base), plate_rim and object_edge
     (the contact reaches where the object turns up), break (break strain), gauge_range, sway and lobes (the
     axisymmetric path is unstable to one wave around the axis, or to several). ``detail``: in words.

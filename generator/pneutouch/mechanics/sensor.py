@@ -10,6 +10,7 @@ from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean, st
 from pneutouch.shape.dome import DomeShape
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.soft.body import SoftBody
     from pneutouch.mechanics.solid.indenter import RigidObject
 
 
@@ -118,6 +119,7 @@ class IndentationProtocol:
     the flat plate; ``plate_rim`` is the radius of its rim, None if not stated; ``friction`` is Coulomb's coefficient,
     inf for a surface that grips. The object's axis is at the distance ``offset`` from the dome's; a plate leans by
     ``tilt`` (rad), upwards on the side of the offset; after the press the object moves by ``shear`` to that side.
+    ``soft``: what the object is made of; None: it is rigid.
     """
 
     plate_radius: float
@@ -130,6 +132,7 @@ class IndentationProtocol:
     offset: float = 0.0
     tilt: float = 0.0
     shear: float = 0.0
+    soft: "SoftBody | None" = None
 
     @property
     def off_axis(self) -> str | None:
@@ -147,6 +150,8 @@ class IndentationProtocol:
         """Difference in words from a central, frictionless plate, the only contact of membrane and atlas; or None."""
         if self.off_axis is not None:
             return self.off_axis
+        if self.soft is not None:
+            return f"the object is {self.soft.label}"
         if self.body is not None:
             return f"the object is a {self.body.label}, not a plate"
         if self.friction > 0.0:

@@ -50,21 +50,21 @@ def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
     """Words for a rigid object and its place: friction before its name, or after it for a coefficient."""
     place = f", {contact.place}" if contact.off_axis else ""
     if 0.0 < contact.friction < float("inf"):
-        return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}{place}"
-    return f"rigid, {shape}{contact.hold} {name}{place}"
+        return f"{contact.stuff} {shape.replace(', ', ' ')}{name}, {contact.hold}{place}"
+    return f"{contact.stuff}, {shape}{contact.hold} {name}{place}"
 
 
 def presser(scene: ResolvedDesign) -> str:
     """Words for the object that presses the sensor, such as ``rigid ball of 5 mm radius``."""
     contact = scene.design.contact
     size = f" of {scene.design.indentation.plate_diameter_mm:g} mm" if contact.is_plate else ""
-    return f"rigid {contact.label}{size}"
+    return f"{contact.stuff} {contact.label}{size}"
 
 
 def limits_of_use(scene: ResolvedDesign) -> str:
     """Sentences on the limits of use, and on the contact for which the figures hold."""
     contact = scene.design.contact
-    body = "flat rigid body" if contact.is_plate else presser(scene)
+    body = "flat rigid body" if contact.is_plate and not contact.softness else presser(scene)
     hold = f" ({contact.hold})" if contact.friction else ""
     use = WORDS["datasheet"]["limits_of_use"]
     return f"{use} The figures hold for slow, {contact.kind_of_place} contact with a {body}{hold}."

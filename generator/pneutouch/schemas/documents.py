@@ -143,6 +143,7 @@ def contact(notes: bool = False) -> Schema:
         "plate_diameter_mm": NUMBER,
         "plate_rim_mm": NUMBER,
         **{**sizes, "profile_mm": corners},
+        **dict.fromkeys(("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm"), NUMBER),
         "friction": any_of(NUMBER, {"const": "inf"}),
         "offset_mm": NUMBER,
         "tilt_deg": NUMBER,

@@ -97,6 +97,15 @@ class ContactTable(Table):
         "upwards, joined by lines and each rounded to its radius.",
     )
 
+    object_modulus_MPa: float | None = number(
+        None, unit="MPa", low=0.001, high=1e4, help="Young's modulus of a soft plate or ball; left out: it is rigid."
+    )
+    object_poisson_ratio: float = number(
+        0.49, unit="", low=0, high=0.5, help="Poisson's ratio of a soft object; those of silicones are close to 0.5."
+    )
+    object_thickness_mm: float | None = number(
+        None, unit="mm", low=0.2, high=500, help="Thickness of a soft layer on a rigid ground; left out: it is deep."
+    )
     friction: Friction = Field(
         default=0.0,
         allow_inf_nan=True,
@@ -148,6 +157,26 @@ class ContactTable(Table):
                     "ring_radius_mm",
                     "ring_section_radius_mm",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _gives_way(self) -> "ContactTable":
+        given = [key for key in ("object_poisson_ratio", "object_thickness_mm") if key in self.model_fields_set]
+        if self.object_modulus_MPa is None:
+            if given and getattr(self, given[0]) is not None:
+                raise FieldsError(f"{given[0]} is of a soft object; give object_modulus_MPa as well", *given)
+            return self
+        if self.object not in ("plate", "ball") or self.plate_rim_mm is not None:
+            problem = "a soft object is a plate without a stated rim (a block or a layer), or a ball"
+            raise FieldsError(problem, "object", "object_modulus_MPa", "plate_rim_mm")
+        if self.object == "ball" and self.object_thickness_mm is not None:
+            problem = "object_thickness_mm of a ball: a soft ball is one body; only a plate is a layer"
+            raise FieldsError(problem, "object", "object_thickness_mm")
+        other = [key for key in ("friction", "offset_mm", "tilt_deg", "shear_mm", "anywhere") if getattr(self, key)]
+        if other:
+            at = f"object_modulus_MPa with {other[0]} = {getattr(self, other[0])}"
+            problem = f"{at}: a soft object presses on the axis, without friction"
+            raise FieldsError(problem, "object_modulus_MPa", *other)
         return self
 
     @model_validator(mode="after")
@@ -227,8 +256,17 @@ class ContactTable(Table):
 
     @property
     def is_atlas_plate(self) -> bool:
-        """True for the contact of the models membrane and atlas: a central plate, usual rim, no friction."""
-        return self.is_plate and self.plate_rim_mm is None and not self.friction and not self.off_axis
+        """True for the contact of the models membrane and atlas: a rigid central plate, usual rim, no friction."""
+        usual = self.is_plate and self.plate_rim_mm is None and self.object_modulus_MPa is None
+        return usual and not self.friction and not self.off_axis
+
+    @property
+    def stuff(self) -> str:
+        """What the object is made of, in words: ``rigid``, or its modulus and thickness."""
+        if self.object_modulus_MPa is None:
+            return "rigid"
+        layer = "" if self.object_thickness_mm is None else f", {self.object_thickness_mm:g} mm on a rigid ground"
+        return f"soft ({self.object_modulus_MPa:g} MPa{layer})"
 
     @property
     def label(self) -> str:
@@ -246,7 +284,16 @@ class ContactTable(Table):
     @property
     def words(self) -> str:
         """Object, friction and, if it is not axisymmetric, place of contact in words."""
-        return ", ".join([self.label, self.hold, *([self.place] if self.off_axis else [])])
+        stuff = [] if self.object_modulus_MPa is None else [self.stuff]
+        return ", ".join([self.label, *stuff, self.hold, *([self.place] if self.off_axis else [])])
+
+    @property
+    def softness(self) -> dict[str, float]:
+        """Keys of a soft object with their values; empty for a rigid one."""
+        if self.object_modulus_MPa is None:
+            return {}
+        keys = ("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm")
+        return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
     def sizes(self) -> dict[str, Any]:
         """Keys in `SIZES` of this object with their values; empty for a plate."""

@@ -83,7 +83,7 @@ def under_plate(sensor: Sensor) -> Sensor:
     if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
         return sensor
     plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
-    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
+    return sensor.replace(body=None, soft=None, plate_rim=None, friction=0.0, plate_radius=plate)
 
 
 def stand_in(sensor: Sensor) -> Sensor:
@@ -102,6 +102,8 @@ def outside_fit(sensor: Sensor) -> str | None:
     """Reason why a sensor cannot be fitted to measured runs; None if it can. A fit uses the atlas to `_DEPTH`, times
     the solid's ratio to the `stand_in` for a law, grade, softness or contact that the atlas does not cover; for another
     shape than the hemisphere the solid alone."""
+    if sensor.protocol.soft is not None:
+        return f"{sensor.protocol.other_contact}, and a fit presses rigid ones"
     if other_shape(sensor):
         held = None if sensor.dome.flange is None else "the flange is held as printed, not the base plane"
         return sensor.protocol.off_axis or held

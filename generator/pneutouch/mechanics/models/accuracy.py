@@ -27,6 +27,10 @@ OBJECT_DISCRETISATION = 0.02
 it, against a refined mesh (docs/background/contact.md): 0.002 where the range ends at the depth, more where an event
 ends it."""
 
+SOFT = 0.03
+"""Greatest relative error of the solid's force and pressure under a soft object within its range, against CalculiX with
+the object as a second body (docs/background/contact.md)."""
+
 TABULATION = 0.0075
 """Greatest relative error of the atlas's sensitivity against the solid where `auto` uses the atlas: not near buckling
 or tearing, and not for ranges below 0.2 R0 (docs/background/atlas.md); checked by `make check-slow`."""
@@ -56,6 +60,8 @@ TREND: str = _WORDS["trend"].format(off=1 + NUMERICAL["membrane"])
 def sensitivity_discretisation(sensor: Sensor) -> float:
     """Greatest relative error of the mesh in the sensitivity of a sensor, by shape, object and gas."""
     shape = sensor.dome.shape
+    if sensor.protocol.soft is not None:
+        return SOFT
     if sensor.protocol.body is not None:
         return OBJECT_DISCRETISATION
     if not shape.domed or shape.inner_height >= _SHALLOW * shape.inner_radius:
@@ -97,6 +103,11 @@ def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
 
 def _edge(protocol: IndentationProtocol) -> str:
     """Edge that the solid gives to the plate or other object, in words."""
+    if protocol.soft is not None:
+        return (
+            "the object is linear elastic, isotropic, wider than the contact and without friction; the range ends "
+            "where its surface has moved by half the contact's radius, or half its thickness"
+        )
     if protocol.body is not None:
         return "beyond its edge, or flanks of 60 degrees, the object turns up as a parabola; there the range ends"
     if protocol.plate_rim is not None:

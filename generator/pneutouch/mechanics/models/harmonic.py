@@ -60,7 +60,9 @@ class HarmonicElements(SensorModel):
     name = "harmonic"
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor is not covered, a flange held as printed, or None if it is covered."""
+        """Reason why a sensor is not covered (a flange held as printed, a soft object), or None if it is covered."""
+        if sensor.protocol.soft is not None:
+            return sensor.protocol.other_contact
         held = sensor.dome.flange is not None
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric" if held else None
 

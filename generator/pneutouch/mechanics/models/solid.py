@@ -90,7 +90,7 @@ class SolidElements(SensorModel):
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
         """Assumptions of the solid, with the numbers of waves around the axis that are checked."""
-        waves = sensor.protocol.waves
+        waves = 0 if sensor.protocol.soft else sensor.protocol.waves
         checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else NOT_CHECKED
         return solid_assumptions(sensor, f"{BODY}; {checked}")
 
@@ -264,6 +264,7 @@ def press_settings(sensor: Sensor) -> PressSettings:
         plate_diameter=2 * test.plate_radius,
         plate_rim=test.plate_rim,
         body=test.body,
+        soft=test.soft,
         friction=test.friction,
         ambient=gas.ambient_pressure,
         dead_volume=gas.dead_volume,
@@ -289,6 +290,9 @@ def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, free: FreeState, 
     body = first_touch(probe.solid, free, press.body, press.plate_diameter, press.plate_rim).body
     last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     section = partial(_section, press.body, body.height, probe.solid.length)
+    face = partial(_face, sensor, probe.solid.mesh, body, last.positions, last.indentation)
+    if pressed.undersides:
+        section = partial(_yielded, pressed, probe.solid.length)
     return SensorState(
         pressure,
         *free_figures(free),
@@ -299,7 +303,7 @@ def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, free: FreeState, 
         events=tuple(happened),
         shapes=_shapes(probe, free, last, section),
         walls=_walls(probe.solid.mesh, pressed, section),
-        face=partial(_face, sensor, probe.solid.mesh, body, last.positions, last.indentation),
+        face=None if pressed.undersides else face,
     )
 
 
@@ -371,6 +375,14 @@ def _walls(mesh: SolidMesh, pressed: IndentationPath, section: _Section) -> Wall
         outer=positions[:, nodes_along(mesh.outer)],
         objects=tuple(section for section in sections if section is not None),
     )
+
+
+def _yielded(pressed: IndentationPath, length: float, at: float | None) -> Array | None:
+    """Section of a soft object at an indentation, from its surface at the nearest state of a press."""
+    if at is None:
+        return None
+    nearest = int(np.abs(pressed.column("indentation") - at).argmin())
+    return pressed.undersides[nearest].outline(_DRAWN * length)
 
 
 def _section(body: "RigidObject | None", start: float, length: float, at: float | None) -> Array | None:

@@ -28,13 +28,14 @@ from pneutouch.mechanics.solid.continuation import Guides, PathFollower, PathJum
 from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import UnreachableLoadError
+from pneutouch.mechanics.solid.newton import SolverState, UnreachableLoadError
 from pneutouch.mechanics.solid.object_contact import Footprint, Indenter, Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.soft.body import SoftBody
     from pneutouch.mechanics.solid.indenter import RigidObject
 
 #: A pressure below absolute vacuum by less than this, in mu, is due to rounding.
@@ -51,7 +52,8 @@ class PressSettings:
     waves: greatest number of waves around the axis for which the path's stability is checked (`sway`); 0: no check.
     plate_rim:   radius of curvature of the plate's rim, mm; None: a thirtieth of the plate's radius.
     body: the object in mm that replaces the plate (its height is ignored); None: the plate. friction: Coulomb's
-      coefficient between wall and plate or object; inf for a surface that grips.
+      coefficient between wall and plate or object; inf for a surface that grips. soft: the object gives way; None: it
+      is rigid, and ``body`` or the plate.
     """
 
     depth: float
@@ -65,6 +67,7 @@ class PressSettings:
     body: RigidObject | None = None
     plate_rim: float | None = None
     waves: int = 0
+    soft: SoftBody | None = None
 
     def __post_init__(self) -> None:
         finite = np.isfinite([self.depth, self.ambient, self.dead_volume]).all()
@@ -119,6 +122,7 @@ class IndentationPath:
     """``states`` at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
     ``path`` has every state, also between the steps, ``solved`` the solver's. ``complete``: the depth was reached.
+    ``undersides``: of a soft object, its surface (mm) at every state of ``path``; empty for a rigid one.
     """
 
     states: list[PressState]
@@ -126,6 +130,7 @@ class IndentationPath:
     events: list[SolidEvent]
     complete: bool
     solved: Sequence[PlateState] = ()
+    undersides: Sequence[RigidObject] = ()
 
     def column(self, name: str) -> Array:
         """The field ``name`` of every state, (n_states,)."""
@@ -148,9 +153,14 @@ def indent(
     `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
     there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
     """
+    if press.soft is not None:
+        # Most objects are rigid: the modules of soft ones are loaded only here.
+        from pneutouch.mechanics.soft.press import soft_press
+
+        return soft_press(solid, free, press, press.soft, probe or StrainProbe(solid))
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
     follower, length, plate = follower_of(solid, free, press, touch, guides), solid.length, touch.body
-    recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
+    recorder = PressRecorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
     jump: PathJump | None = None
@@ -208,7 +218,11 @@ def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
 
 
 def _finish(
-    states: list[PressState], events: list[SolidEvent], jump: PathJump | None, recorder: _Recorder, press: PressSettings
+    states: list[PressState],
+    events: list[SolidEvent],
+    jump: PathJump | None,
+    recorder: PressRecorder,
+    press: PressSettings,
 ) -> IndentationPath:
     """Path with the states at the plate steps and, if a jump ended it, with the event of this jump."""
     if jump is not None:
@@ -218,7 +232,7 @@ def _finish(
     return IndentationPath(at_steps, states, events, len(at_steps) == press.steps + 1)
 
 
-class _Recorder:
+class PressRecorder:
     """Converts the solver's states to mm, N and MPa, and finds the events between consecutive ones."""
 
     def __init__(self, solid: SolidModel, free: FreeState, touch: FirstTouch, probe: StrainProbe) -> None:
@@ -237,28 +251,38 @@ class _Recorder:
         """A converged state of the solver in mm, N and MPa."""
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
-        length, mu = solid.length, solid.mu
-        base = solid.base_load(x)
-        foot, peak = solid.contact.footprint(x, touch, self._annular), self._probe.peak(x)
+        foot = solid.contact.footprint(x, touch, self._annular)
         if foot.traction == 0.0:
             foot = Footprint(self._first, 0.0, 0.0, self._first if self._annular else 0.0)
-        pressure = plate_state.state.filling.pressure * mu
+        stiffness = -plate_state.stiffness
+        slope = -plate_state.pressure_rate / stiffness if stiffness else np.nan
+        state = self.balanced(plate_state.state, foot, plate_state.force, stiffness, slope)
+        deep = max(state.penetration, -float(touch.gap.min()) * solid.length)
+        return replace(state, indentation=self.indentation(plate_state.height), penetration=deep)
+
+    def balanced(self, state: SolverState, foot: Footprint, force: float, stiffness: float, slope: float) -> PressState:
+        """A state under an object that touches it at ``foot``, with its force and the slopes of force and pressure, all
+        nondimensional, in mm, N and MPa at the indentation 0."""
+        solid, x = self._solid, state.x
+        length, mu = solid.length, solid.mu
+        base, peak = solid.base_load(x), self._probe.peak(x)
+        pressure = state.filling.pressure * mu
         return PressState(
-            indentation=self.indentation(plate_state.height),
-            force=plate_state.force * mu * length**2,
+            indentation=0.0,
+            force=force * mu * length**2,
             pressure=pressure,
             rise=pressure - self._free.pressure,
-            volume=plate_state.state.volume * length**3,
+            volume=state.volume * length**3,
             contact_radius=foot.radius * length,
             contact_inner=foot.inner * length,
             contact_pressure=foot.traction * mu,
             inside_gap=foot.inside_gap * length,
-            stiffness=-plate_state.stiffness * mu * length,
-            slope=plate_state.pressure_rate / plate_state.stiffness / length**2 if plate_state.stiffness else np.nan,
+            stiffness=stiffness * mu * length,
+            slope=slope / length**2,
             stretch=peak.stretch,
             von_mises=peak.von_mises,
             fold=peak.fold,
-            penetration=max(base.penetration, -float(touch.gap.min())) * length,
+            penetration=base.penetration * length,
             inner_apex=float(x[solid.mesh.inner_apex, 1]) * length,
             overhang=max(0.0, float((solid.bottom - x[:, 1]).max()) * length),
             base_force=base.force * mu * length**2,

@@ -64,6 +64,8 @@ def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
     if model == "membrane":
         return _MEMBRANE
     test = sensor.protocol
+    if test.soft is not None:
+        return f"{test.other_contact}: neither its own relaxation nor the wall's under it is modelled"
     if test.other_contact is not None and test.off_axis is None and sensor.wall.law is None:
         return None
     from pneutouch.mechanics.models.choice import outside
