@@ -33,12 +33,7 @@ FEW = {"indentation.steps": 8}
             "object",
         ),
         (
-            {
-                **SOFT,
-                "contact.object": "ball",
-                "contact.ball_radius_mm": 8.0,
-                "contact.object_thickness_mm": 3.0,
-            },
+            {**SOFT, "contact.object": "ball", "contact.ball_radius_mm": 8.0, "contact.object_thickness_mm": 3.0},
             "object",
         ),
         ({"contact.object_modulus_MPa": 1e-4}, "object_modulus_MPa"),
@@ -66,8 +61,9 @@ def test_other_models_and_fits_say_why_not():
     for model in ("membrane", "atlas", "local", "harmonic"):
         with pytest.raises(InputError, match="soft"):
             evaluate("paper-dome", SOFT | FEW, model=model)
-    with pytest.raises(InputError, match="3% in sensitivity"):
+    with pytest.raises(InputError) as error:
         evaluate("paper-dome", SOFT | FEW, model="auto", tolerance=0.02)
+    assert error.value.key == "tolerance"
     assert evaluate("paper-dome", SOFT | FEW, model="auto", tolerance=0.05).prediction.model == "solid"
 
 
@@ -87,21 +83,21 @@ def test_the_command_prints_a_soft_object_s_range_and_no_relaxation(tmp_path):
     asked = ["predict", "agilus-dome", "--set", "contact.object_modulus_MPa=0.02", "--set", "indentation.steps=8"]
     done = in_process(asked, tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "object strained" in done.stdout
-    assert re.search("relaxation and hysteresis not known: the object is soft", done.stdout)
+    assert re.search("object strained, [0-9.]+ mm", done.stdout)
+    assert re.search("hysteresis not known: the object is soft", done.stdout)
 
 
 def test_the_page_states_what_calculix_found():
     """The page's bounds hold for every point within the range of the stored comparison."""
     stored = json.loads((ROOT / "docs/background/soft-objects.json").read_text(encoding="utf-8"))
     page = (ROOT / "docs/background/contact.md").read_text(encoding="utf-8")
-    force, rise = (float(one) for one in re.search(r"force within ([\d.]+) %, rise within ([\d.]+) %", page).groups())
+    found = re.search(r"force within ([\d.]+) %, rise within ([\d.]+) % of the scene's greatest", page)
+    force, rise = (float(one) / 100.0 for one in found.groups())
     assert len(stored["scenes"]) == 8
     for scene in stored["scenes"]:
         inside = (np.array(scene["strain"]) <= 1.0) & np.isfinite(np.array(scene["calculix_force_N"], dtype=float))
-        assert inside.sum() >= 6, scene
-        for name, bound in (("force_N", force), ("rise_kPa", rise)):
-            ours, there = (np.array(scene[key], dtype=float)[inside] for key in (name, f"calculix_{name}"))
-            # Of a volume that hardly changes, its print's digits and the meshes' free volumes are seen.
-            seen = ours > 0.1 * ours[-1]
-            assert np.abs(ours / there - 1.0)[seen].max() <= bound / 100.0, (scene, name)
+        assert inside.sum() >= 5, scene
+        ours, there = (np.array(scene[key], dtype=float)[inside] for key in ("force_N", "calculix_force_N"))
+        assert np.abs(ours / there - 1.0).max() <= force, scene
+        ours, there = (np.array(scene[key], dtype=float)[inside] for key in ("rise_kPa", "calculix_rise_kPa"))
+        assert np.abs(ours - there).max() <= rise * ours[-1], scene

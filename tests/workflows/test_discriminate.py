@@ -9,18 +9,12 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.evaluation.object_table import ObjectTable, object_table
+from pneutouch.evaluation.posterior import Posterior, interval, region, weights_of
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.spec.options import DiscriminationOptions
 from pneutouch.units import KPA
-from pneutouch.workflows.discriminate import (
-    ObjectTable,
-    Posterior,
-    discriminate,
-    interval,
-    object_table,
-    region,
-    weights_of,
-)
+from pneutouch.workflows.discriminate import discriminate
 from tests.running import in_process
 
 SLOPES = np.array([0.2, 3.0, 6.0])
@@ -44,7 +38,7 @@ def test_region_and_intervals_are_those_of_the_gaussian_posterior(chosen):
     # Errors count the rise of the node: that moves the mode by error squared, and the width by less than 3 %.
     low, high = interval(np.log(table.forces), weights.sum(axis=0))
     assert high - low == pytest.approx(2 * 1.96 * math.sqrt(covariance[0, 0]), rel=0.03)
-    low, high = interval(table.curvatures, weights.sum(axis=1))
+    low, high = interval(table.objects, weights.sum(axis=1))
     assert high - low == pytest.approx(2 * 1.96 * math.sqrt(covariance[1, 1]), rel=0.03)
     whole = 0.2 * math.log(25.0)
     ellipse = math.pi * -2.0 * math.log(0.05) * math.sqrt(np.linalg.det(covariance))
@@ -55,9 +49,9 @@ def test_one_reading_tells_a_line_of_objects_and_forces():
     table, error = exponential(), 0.02
     weights = Posterior(table, 0.0, error).of(table.at(0.1, 1.0), (2,))
     # Whatever the curvature, ln F + b kappa is known.
-    low, high = interval(table.curvatures, weights.sum(axis=1))
+    low, high = interval(table.objects, weights.sum(axis=1))
     assert high - low == pytest.approx(0.95 * 0.2, rel=0.02)
-    logs = np.log(table.forces)[None] + SLOPES[2] * table.curvatures[:, None]
+    logs = np.log(table.forces)[None] + SLOPES[2] * table.objects[:, None]
     mean = (weights * logs).sum()
     assert math.sqrt((weights * (logs - mean) ** 2).sum()) == pytest.approx(error, rel=0.05)
 
@@ -69,10 +63,10 @@ def test_a_region_of_one_node_is_a_part_of_it():
     assert region(np.full((4, 5), 0.05)) == pytest.approx(0.95)
 
 
-def covered(table, noise, error, count, seed=1):
-    """Shares of random objects whose curvature and force lie in their intervals."""
-    posterior, random = Posterior(table, noise, error), np.random.default_rng(seed)
-    bends, logs = table.curvatures, np.log(table.forces)
+def covered(table, noise, error, count, seed=1, travel_noise=0.0):
+    """Shares of random objects whose curvature or compliance, and force, lie in their intervals."""
+    posterior, random = Posterior(table, noise, error, travel_noise), np.random.default_rng(seed)
+    bends, logs = table.objects, np.log(table.forces)
     inside, tried = np.zeros(2), 0
     while tried < count:
         bend, log = random.uniform(bends[0], bends[-1]), random.uniform(logs[0], logs[-1])
@@ -80,7 +74,7 @@ def covered(table, noise, error, count, seed=1):
             continue
         tried += 1
         reading = posterior.drawn(table.at(bend, math.exp(log)), random)
-        weights = posterior.of(reading, range(len(reading)))
+        weights = posterior.of(reading, range(len(table.pressures_kPa)))
         for k, (true, values, axis) in enumerate(((bend, bends, 1), (log, logs, 0))):
             low, high = interval(values, weights.sum(axis=axis))
             inside[k] += low <= true <= high
@@ -109,7 +103,7 @@ def test_intervals_hold_the_truth_in_93_to_97_percent(noise_kPa, error):
 
 def test_between_its_nodes_the_table_is_a_press(paper):
     """Curvature and forces between nodes, against a table that has that curvature as its last node."""
-    radius = 1.0 / (0.75 * paper.curvatures[-1])
+    radius = 1.0 / (0.75 * paper.objects[-1])
     other = object_table("paper-dome", None, [0.0, 12.0, 22.0], radius, (7, 240))
     for force in (1.0, 1.5, 2.0):
         # 0.75 of the greatest curvature lies between two of seven nodes.
@@ -153,10 +147,14 @@ def test_a_plan_is_better_than_any_single_pressure_and_none_of_its_size_is_bette
     assert three.plan.area_ratio < record.plan.area_ratio
 
 
-def test_friction_and_place_of_the_design_s_own_object_do_not_count():
+def test_friction_place_and_stuff_of_the_design_s_own_object_do_not_count():
     few = DiscriminationOptions(driving_pressures_kPa=[0.0, 22.0], classes_mm=[8.0])
-    changed = {"contact.friction": 0.8, "contact.offset_mm": 2.0}
-    assert discriminate("paper-dome", changed, few).told == discriminate("paper-dome", None, few).told
+    changed = [
+        {"contact.friction": 0.8, "contact.offset_mm": 2.0},
+        {"contact.object_modulus_MPa": 0.1, "contact.object_poisson_ratio": 0.4, "contact.object_thickness_mm": 5.0},
+    ]
+    told = discriminate("paper-dome", None, few).told
+    assert all(discriminate("paper-dome", one, few).told == told for one in changed)
 
 
 @pytest.mark.parametrize(
@@ -189,7 +187,7 @@ def test_errors_that_grow_with_the_reading_count_in_the_likelihood():
 def test_forces_below_the_table_are_not_known(paper):
     assert np.isnan(paper.at(0.0, 0.5 * paper.forces[0])).all()
     # The smallest ball's tenth is in the table.
-    assert paper.forces[0] < 0.1 * paper.reach(paper.curvatures[-1])
+    assert paper.forces[0] < 0.1 * paper.reach(paper.objects[-1])
 
 
 @pytest.mark.slow
@@ -209,3 +207,74 @@ def test_a_small_ball_is_told_too():
 def test_weights_of_nodes_beyond_the_range_are_nothing():
     logs = np.array([[[0.0, math.nan], [math.log(3.0), -math.inf]]])
     assert weights_of(logs, (0,)) == pytest.approx(np.array([[0.25, 0.0], [0.75, 0.0]]))
+
+
+BLOCKS = DiscriminationOptions(driving_pressures_kPa=[0.0, 12.0, 22.0], unknown=["modulus", "force"])
+
+
+@pytest.fixture(scope="module")
+def blocks():
+    """The paper's sensor on soft blocks, its travel read too."""
+    return object_table("paper-dome", None, [0.0, 12.0, 22.0], 0.05, (61, 240), "modulus", travels=True)
+
+
+def test_a_softer_block_gives_way_and_the_tense_dome_feels_it_less(blocks):
+    stiff, soft = blocks.at(0.0, 1.0), blocks.at(1.0 / 0.1, 1.0)
+    rises, travels = soft[:3] / stiff[:3], soft[3:] / stiff[3:]
+    assert (rises < 1.0).all() and (np.diff(rises) > 0.0).all()
+    assert (travels > 1.2).all()
+
+
+def test_between_its_moduli_the_table_is_a_press(blocks):
+    # Compliances of 4, 8, .. 20 per MPa are nodes.
+    other = object_table("paper-dome", None, [0.0, 12.0, 22.0], 0.1, (6, 240), "modulus", travels=True)
+    for compliance in (2.0, 6.0, 10.0):
+        for force in (0.3, 1.0, 2.0):
+            assert blocks.at(compliance, force) == pytest.approx(other.at(compliance, force), rel=0.015)
+
+
+def test_intervals_of_moduli_hold_the_truth(blocks):
+    shares = covered(blocks, 0.02 * KPA, 0.02, 200, travel_noise=0.05)
+    assert (np.abs(shares - 0.95) < 3 * math.sqrt(0.95 * 0.05 / 200)).all(), shares
+
+
+@pytest.mark.slow
+def test_intervals_of_moduli_hold_the_truth_in_93_to_97_percent():
+    table = object_table("paper-dome", None, [0.0, 12.0, 22.0], 0.05, told="modulus", travels=True)
+    shares = covered(table, 0.02 * KPA, 0.01, 1000, travel_noise=0.05)
+    assert (shares > 0.93).all() and (shares < 0.975).all(), shares
+
+
+def test_travel_tells_three_silicones_and_pressures_some_of_it():
+    without = discriminate("paper-dome", None, BLOCKS)
+    read = discriminate("paper-dome", None, BLOCKS.model_copy(update={"travel_noise_mm": 0.05}))
+    assert without.classes == read.classes == ("plate", "block 0.6 MPa", "block 0.15 MPa", "block 0.07 MPa")
+    told, single, by_travel = (
+        np.array(one).trace() / 4 for one in (without.confusion, without.confusion_single, read.confusion)
+    )
+    assert single < told < by_travel and by_travel > 0.97
+    assert without.area_ratio < 0.6 and without.least_radius_mm is None
+    for one, other in zip(without.told, read.told, strict=True):
+        wide, narrow = (
+            high - low for low, high in (one.compliance_interval_per_MPa, other.compliance_interval_per_MPa)
+        )
+        assert narrow <= wide * (1.0 + 1e-9)
+        low, high = other.compliance_interval_per_MPa
+        assert low <= (1.0 / other.modulus_MPa if other.modulus_MPa else 0.0) <= high
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"unknown": ["place", "force"]}, "pad"),
+        ({"unknown": ["modulus", "travel"]}, "travel_noise_mm"),
+        ({"unknown": ["radius", "modulus", "force"]}, "one kind of object"),
+        ({"unknown": ["radius"]}, "radius,force or modulus,force"),
+        ({"unknown": ["modulus", "force"], "noise_kPa": 1.0, "error_percent": 10.0}, "read the travel too"),
+        ({"unknown": ["modulus", "force"], "moduli_MPa": [0.01]}, "least_modulus_MPa"),
+    ],
+)
+def test_what_no_reading_tells_is_refused_with_what_would(change, says):
+    with pytest.raises(InputError) as error:
+        discriminate("paper-dome", None, BLOCKS.model_copy(update=change))
+    assert says in str(error.value)

@@ -22,30 +22,31 @@ def discriminate(
     from pneutouch.workflows.discriminate import discriminate as told
 
     asked = given(DiscriminationOptions, options)
-    with bar("pressing the sensor by plates and balls"):
+    with bar("pressing the sensor"):
         record = told(design, changes(set_, calibration), asked)
     print_answer(record, discrimination_text, json=json)
-
-
-_HEAD = ["object", "force N", "force +- %", "radius mm", "region", "force"]
 
 
 def discrimination_text(record: DiscriminationRecord) -> str:
     """Tables of what is told, of the confusion of classes, and the planned pressures."""
     pressures = ", ".join(f"{one_kPa:g}" for one_kPa in record.driving_pressures_kPa)
+    balls = record.least_radius_mm is not None
+    head = ["object", "force N", "force +- %", "radius mm" if balls else "modulus MPa", "region", "force"]
     rows = []
     for one in record.told:
-        low, high = one.curvature_interval_per_mm
-        radii = "plate" if high < _FLAT else f"{_radius(high)} to {_radius(low)}"
+        low, high = one.curvature_interval_per_mm or one.compliance_interval_per_MPa or (0.0, 0.0)
+        limit = _FLAT if balls else _STIFF
+        objects = "plate" if high < limit else f"{_inverse(high, limit)} to {_inverse(low, limit)}"
         ratios = [f"{one.area_ratio:.2f}", f"{one.force_ratio:.2f}"]
-        rows.append([one.object, f"{one.force_N:.3g}", f"{one.force_half_width_percent:.1f}", radii, *ratios])
+        rows.append([one.object, f"{one.force_N:.3g}", f"{one.force_half_width_percent:.1f}", objects, *ratios])
     lines = [
-        f"{record.design}: plates and balls from {record.least_radius_mm:g} mm, one force at {pressures} kPa",
-        f"noise of a rise {record.noise_kPa:.3g} kPa, error that readings do not share {record.error_percent:g} %",
+        f"{record.design}: {_objects(record)}, one force at {pressures} kPa",
+        f"noise of a rise {record.noise_kPa:.3g} kPa{_travel(record)}, error that readings do not share "
+        f"{record.error_percent:g} %",
         "",
-        table_text(_HEAD, rows),
+        table_text(head, rows),
         "",
-        "95 % intervals by all readings. Region and force: the area of the 95 % region of force and curvature, and the",
+        "95 % intervals by all readings. Region and force: the area of the 95 % region of force and object, and the",
         f"width of the interval of the force, over those by the best single pressure, {record.best_single_kPa:g} kPa.",
         f"In the mean the region is {100.0 * record.area_ratio:.0f} % of that.",
         "",
@@ -61,12 +62,22 @@ def discrimination_text(record: DiscriminationRecord) -> str:
     return "\n".join(lines)
 
 
-_FLAT = 1e-3
-"""Curvature, 1/mm, below which a ball is as flat as a plate here: its radius is a metre."""
+_FLAT, _STIFF = 1e-3, 0.02
+"""Curvature, 1/mm, and compliance, 1/MPa, below which an object is a rigid plate here: a metre and 50 MPa."""
 
 
-def _radius(curvature: float) -> str:
-    return "plate" if curvature < _FLAT else f"{1.0 / curvature:.3g}"
+def _inverse(value: float, limit: float) -> str:
+    return "plate" if value < limit else f"{1.0 / value:.3g}"
+
+
+def _objects(record: DiscriminationRecord) -> str:
+    if record.least_radius_mm is not None:
+        return f"plates and balls from {record.least_radius_mm:g} mm"
+    return f"plates and blocks from {record.least_modulus_MPa:g} MPa"
+
+
+def _travel(record: DiscriminationRecord) -> str:
+    return "" if record.travel_noise_mm is None else f", of a travel {record.travel_noise_mm:g} mm"
 
 
 def _confused(record: DiscriminationRecord) -> list[list[str]]:

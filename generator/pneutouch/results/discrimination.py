@@ -11,19 +11,23 @@ class ToldObject:
     object: str
     """The object in words."""
     ball_radius_mm: float | None
-    """Radius of the ball; null: a plate."""
+    """Radius of the ball; null: a plate or a block."""
+    modulus_MPa: float | None
+    """Modulus of the block; null: a rigid object."""
     force_N: float
     """Force that presses it."""
     force_half_width_percent: float
     """Half of the interval of the force, over the force, by all readings."""
-    curvature_interval_per_mm: tuple[float, float]
-    """Interval of the curvature, by all readings."""
+    curvature_interval_per_mm: tuple[float, float] | None
+    """Interval of the curvature, by all readings; null: the modulus is told."""
+    compliance_interval_per_MPa: tuple[float, float] | None
+    """Interval of the inverse of the modulus, by all readings; null: the radius is told."""
     area_ratio: float
-    """Area of the 95 % region of force and curvature by all readings, over that by the best single pressure of all."""
+    """Area of the 95 % region of force and object by all readings, over that by the best single pressure of all."""
     force_ratio: float
     """Width of the interval of the force by all readings, over that by the best single pressure of all."""
     correlation: float
-    """Correlation of the logarithm of the force and the curvature, by all readings; near 1 or -1: confounded."""
+    """Correlation of the logarithm of the force and curvature or compliance, by all readings; near +-1: confounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +42,7 @@ class PlannedReading:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscriminationRecord:
-    """Readings of plates and balls, pressed centrally by an unknown force, at several driving pressures."""
+    """Readings of plates, balls or soft blocks, pressed centrally by an unknown force, at several driving pressures."""
 
     design: str
     """Name of the design."""
@@ -48,8 +52,12 @@ class DiscriminationRecord:
     """Standard deviation of a pressure rise that is read."""
     error_percent: float
     """Standard deviation of the errors of the sensor that readings do not share, over the rise."""
-    least_radius_mm: float
-    """Radius of the smallest ball that may press."""
+    least_radius_mm: float | None
+    """Radius of the smallest ball that may press; null: blocks press."""
+    least_modulus_MPa: float | None
+    """Modulus of the softest block that may press; null: balls press."""
+    travel_noise_mm: float | None
+    """Standard deviation of a travel that is read; null: none is."""
     greatest_force_N: float
     """Greatest force that every reading holds under a plate."""
     told: tuple[ToldObject, ...]

@@ -161,9 +161,13 @@ class ContactTable(Table):
 
     @model_validator(mode="after")
     def _gives_way(self) -> "ContactTable":
-        given = [key for key in ("object_poisson_ratio", "object_thickness_mm") if key in self.model_fields_set]
+        given = [
+            key
+            for key in ("object_poisson_ratio", "object_thickness_mm")
+            if getattr(self, key) != type(self).model_fields[key].default
+        ]
         if self.object_modulus_MPa is None:
-            if given and getattr(self, given[0]) is not None:
+            if given:
                 raise FieldsError(f"{given[0]} is of a soft object; give object_modulus_MPa as well", *given)
             return self
         if self.object not in ("plate", "ball") or self.plate_rim_mm is not None:

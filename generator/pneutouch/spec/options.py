@@ -261,6 +261,31 @@ class DiscriminationOptions(Options):
         flag="pressures",
         metavar="KPA,KPA",
     )
+    unknown: Annotated[list[str], _ONCE, _AT_LEAST_ONE] = option(
+        ["radius", "force"],
+        "What is told: radius,force of plates and balls, or modulus,force of blocks.",
+        metavar="A,B",
+    )
+    moduli_MPa: Annotated[list[float], AfterValidator(list_check(0.001, 1e4, "MPa"))] = option(
+        [0.07, 0.15, 0.6],
+        "Moduli of blocks to be told apart, and from a rigid plate, MPa: by default those of soft to firm silicones.",
+        unit="MPa",
+        flag="moduli",
+        metavar="MPA,MPA",
+    )
+    least_modulus_MPa: float = option(
+        0.05, "Modulus of the softest block that may press, MPa.", unit="MPa", low=0.001, high=1e3, flag="least-modulus"
+    )
+    thickness_mm: float | None = option(
+        None, "Thickness of the blocks on a rigid ground, mm; left out: they are deep.", unit="mm", low=0.2, high=500
+    )
+    travel_noise_mm: float | None = option(
+        None,
+        "Standard deviation of the travel since first contact, mm, if a stage reads it.",
+        unit="mm",
+        low=1e-4,
+        high=10,
+    )
     classes_mm: Annotated[list[float], AfterValidator(list_check(0.05, 1000.0, "mm"))] = option(
         [20.0, 8.0], "Radii of balls to be told apart, and from a plate, mm.", unit="mm", flag="balls", metavar="MM,MM"
     )

@@ -8,7 +8,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.soft.layer import bonded_layer, half_space
 
-_HIGHEST, _STEP, _TO_WIDTH = 60.0, 0.1, 5.0
+_HIGHEST, _STEP, _TO_WIDTH = 60.0, 0.2, 5.0
 """Least greatest wavenumber and step of the integrals, over 1/reach, and greatest over 1/width of a ring."""
 
 
@@ -53,7 +53,7 @@ class RingCompliance:
 
     @cached_property
     def _wavenumbers(self) -> Array:
-        highest = max(_HIGHEST, _TO_WIDTH * self.reach / float(self.widths.min()))
+        highest = max(_HIGHEST, _TO_WIDTH * self.reach / float(np.median(self.widths)))
         return np.asarray(_STEP * (np.arange(round(highest / _STEP)) + 0.5) / self.reach)
 
     @cached_property

@@ -88,9 +88,10 @@ class SoftPress:
     def _forces(self, found: SoftState) -> Array:
         return np.asarray(found.forces[found.forces > 0.0] * self.solid.mu * self.solid.length**2)
 
-    def _rings(self, found: SoftState) -> RingCompliance:
+    def _rings(self, found: SoftState, reach: float = 0.0) -> RingCompliance:
+        """Rings of the touching points, for places within a reach (R0), at least the contact."""
         touching = (found.forces > 0.0).ravel()
-        return self.scene.rings(found.radii, touching, float(found.radii[found.forces > 0.0].max()))
+        return self.scene.rings(found.radii, touching, max(reach, float(found.radii[found.forces > 0.0].max())))
 
     def footprint(self, found: SoftState) -> Footprint:
         """Edge of the contact, half way to the next point, largest pressure, and largest gap farther inside than an
@@ -113,7 +114,7 @@ class SoftPress:
         travel = 0.0 if found is None else found.travel
         z = self.scene.under(travel, r / self.solid.length)[0] * self.solid.length
         if found is not None:
-            z = z + self._rings(found).surface(self._forces(found), r)
+            z = z + self._rings(found, _DRAWN / 10.0).surface(self._forces(found), r)
         slope = np.append(np.diff(z) / np.diff(r), 0.0)
         pieces = tuple(UndersidePiece(*row) for row in np.stack([r, r, z, slope], axis=1).tolist())
         return RigidObject("soft object", pieces, (0.0, float(r[-1])), smallest=self.solid.length)
