@@ -85,7 +85,7 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     return {
         "contact": {
             "object": contact.object,
-            "label": contact.label,
+            "label": f"{contact.stuff} {contact.label}" if contact.softness else contact.label,
             **sizes,
             **contact.softness,
             "friction": friction,

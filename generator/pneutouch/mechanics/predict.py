@@ -100,13 +100,14 @@ def _filled(
 
 def contact_words(protocol: IndentationProtocol) -> str:
     """Object that presses the sensor, its friction, place and motion, in words."""
-    if protocol.body is None and not protocol.friction and not protocol.off_axis:
+    if protocol.body is None and protocol.soft is None and not protocol.friction and not protocol.off_axis:
         return str(_WORDS["plate"])
     body = "flat plate" if protocol.body is None else protocol.body.label
     hold = f"friction coefficient {protocol.friction:g} (Coulomb)" if protocol.friction else "frictionless"
     hold = "a surface that grips" if protocol.friction == np.inf else hold
     if protocol.off_axis is None:
-        return f"rigid {body}, {hold}, central and straight down"
+        stuff = "rigid" if protocol.soft is None else protocol.soft.label
+        return f"{stuff} {body}, {hold}, central and straight down"
     places = [f"its axis {protocol.offset:g} mm off the dome's"] if protocol.offset else []
     places += ["endless across its plane of symmetry"] if protocol.body is not None and protocol.body.lying else []
     places += [f"leaning by {np.degrees(protocol.tilt):.4g}°"] if protocol.tilt else []

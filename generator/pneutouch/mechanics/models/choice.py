@@ -62,9 +62,13 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     """
     best = usual_model(sensor)
     least = stated_error(best, sensor)
+    if tolerance == DEFAULT_TOLERANCE:
+        # What nobody asked for must not refuse a sensor.
+        tolerance = max(tolerance, least)
     if not tolerance >= least:
         problem = f"no model can state so small an error; the best is the {best}'s {100 * least:g}% in sensitivity"
-        raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
+        enough = f"give at least {100 * least:g}%"
+        raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%", remedy=enough)
     names = list(MODELS)
     passed, models = [], []
     for name in names[: names.index(best) + 1]:
