@@ -8,6 +8,7 @@ the inside pressure follows the solid's own curve, and the rise that is compared
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models.solid import press_settings, solid_probe
-from pneutouch.mechanics.soft.body import SoftBody
+from pneutouch.mechanics.soft.body import Nodule, SoftBody
 from pneutouch.mechanics.soft.press import SoftPress
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome, with_middles
@@ -33,13 +34,14 @@ cell; wedges of two degrees, into which CalculiX turns axisymmetric cells, in a 
 
 class Scene(NamedTuple):
     """Driving pressure (kPa), modulus of the object (MPa), thickness of the layer (mm; None: deep), greatest travel
-    (mm), and first increment, as a share of the press."""
+    (mm), first increment, as a share of the press, and a nodule."""
 
     driving_kPa: float
     modulus: float
     thickness: float | None
     travel: float
     increment: float = 0.1
+    nodule: Nodule | None = None
 
 
 SCENES = (
@@ -52,6 +54,9 @@ SCENES = (
     Scene(22.0, 0.5, None, 5.0),
     Scene(0.0, 5.0, 3.0, 5.0),
 )
+NODULES = tuple(Scene(0.0, 0.05, None, 2.0, 0.125, nodule) for nodule in (None, Nodule(6.0, 3.0, 2.0)))
+"""A block without and with a nodule: 3 mm radius, its middle 6 mm deep, of 2 MPa."""
+
 STEPS = 8
 
 
@@ -63,7 +68,8 @@ def paper_sensor() -> Sensor:
 def main() -> None:
     """Compare and store."""
     sensor = paper_sensor()
-    store("soft-objects", {"scenes": [compared(sensor, scene) for scene in SCENES], "poisson": POISSON})
+    scenes, nodules = ([compared(sensor, scene) for scene in some] for some in (SCENES, NODULES))
+    store("soft-objects", {"scenes": scenes, "nodules": nodules, "poisson": POISSON})
 
 
 def compared(sensor: Sensor, scene: Scene) -> dict[str, Any]:
@@ -72,7 +78,9 @@ def compared(sensor: Sensor, scene: Scene) -> dict[str, Any]:
     driving = scene.driving_kPa * KPA
     solid = solid_probe(sensor).solid
     free = state_at(solid, driving, inflate(solid, to_pressure=driving) if driving else None)
-    press = SoftPress(solid, free, press_settings(sensor), SoftBody(scene.modulus, POISSON, scene.thickness))
+    press = SoftPress(
+        solid, free, press_settings(sensor), SoftBody(scene.modulus, POISSON, scene.thickness, nodule=scene.nodule)
+    )
     points = [press.point(press.to(float(at))) for at in travel[1:]]
     rise = np.array([0.0, *(one.rise for one in points)])
     force, volume = calculix(sensor, scene, travel, driving + rise, free.outer_apex)
@@ -86,7 +94,8 @@ def compared(sensor: Sensor, scene: Scene) -> dict[str, Any]:
         "calculix_force_N": force[1:],
         "calculix_rise_kPa": there[1:] / KPA,
     }
-    return scene._asdict() | {key: np.round(values, 5).tolist() for key, values in row.items()}
+    rounded = {key: np.round(values, 5).tolist() for key, values in row.items()}
+    return scene._asdict() | {"nodule": scene.nodule and asdict(scene.nodule)} | rounded
 
 
 def calculix(sensor: Sensor, scene: Scene, travel: Array, pressures: Array, top: float) -> tuple[Array, Array]:
@@ -150,27 +159,36 @@ def _block(scene: Scene, top: float) -> list[str]:
     """The object, from its surface at the height ``top`` upwards: nodes, cells, material, and its sets."""
     deep, layer = scene.thickness is None, scene.thickness or 0.0
     radii = with_middles(_spaced(FINE, 12.0, 250.0 if deep else 60.0))
-    heights = with_middles(_spaced(FINE, 4.0, 250.0) if deep else np.linspace(0.0, layer, 1 + round(layer / FINE)))
+    flat = 4.0 if scene.nodule is None else 10.0
+    heights = with_middles(_spaced(FINE, flat, 250.0) if deep else np.linspace(0.0, layer, 1 + round(layer / FINE)))
     places = [(i, j) for i in range(len(radii)) for j in range(len(heights)) if not (i % 2 and j % 2)]
     number = {place: FIRST + k for k, place in enumerate(places)}
     around = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1))
     corners = [(i, j) for i in range(0, len(radii) - 2, 2) for j in range(0, len(heights) - 2, 2)]
-    shear, bulk = 0.5 * scene.modulus / (1.0 + POISSON), scene.modulus / (3.0 - 6.0 * POISSON)
+    nodule = scene.nodule or Nodule(0.0, 0.0, scene.modulus)
+    inside = [bool(np.hypot(radii[i + 1], heights[j + 1] - nodule.depth) < nodule.radius) for i, j in corners]
+    cells = [",".join(str(number[i + a, j + b]) for a, b in around) for i, j in corners]
+    deck = ["*NODE,NSET=BLOCK", *(f"{number[i, j]},{radii[i]:.12g},{top + heights[j]:.12g},0." for i, j in places)]
+    for name, modulus, held in (("SOFT", scene.modulus, False), ("HARD", nodule.modulus, True)):
+        if held not in inside:
+            continue
+        shear, bulk = 0.5 * modulus / (1.0 + POISSON), modulus / (3.0 - 6.0 * POISSON)
+        deck += [
+            f"*ELEMENT,TYPE=CAX8R,ELSET={name}",
+            *(f"{FIRST + k},{cell}" for k, cell in enumerate(cells) if inside[k] == held),
+            f"*MATERIAL,NAME={name}",
+            "*HYPERELASTIC,NEO HOOKE",
+            f"{0.5 * shear:.12g},{2.0 / bulk:.12g}",
+            f"*SOLID SECTION,ELSET={name},MATERIAL={name}",
+        ]
     return [
-        "*NODE,NSET=BLOCK",
-        *(f"{number[i, j]},{radii[i]:.12g},{top + heights[j]:.12g},0." for i, j in places),
-        "*ELEMENT,TYPE=CAX8R,ELSET=SOFT",
-        *(f"{FIRST + k}," + ",".join(str(number[i + a, j + b]) for a, b in around) for k, (i, j) in enumerate(corners)),
+        *deck,
         "*ELSET,ELSET=FACE",
         *(f"{FIRST + k}," for k, (_, j) in enumerate(corners) if j == 0),
         "*NSET,NSET=UPPER",
         *(f"{number[place]}," for place in places if place[1] == len(heights) - 1),
         "*NSET,NSET=MIDDLE",
         *(f"{number[place]}," for place in places if place[0] == 0),
-        "*MATERIAL,NAME=SILICONE",
-        "*HYPERELASTIC,NEO HOOKE",
-        f"{0.5 * shear:.12g},{2.0 / bulk:.12g}",
-        "*SOLID SECTION,ELSET=SOFT,MATERIAL=SILICONE",
     ]
 
 

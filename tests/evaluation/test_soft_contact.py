@@ -16,6 +16,7 @@ from tests.running import in_process
 
 ROOT = Path(__file__).resolve().parents[2]
 SOFT = {"contact.object_modulus_MPa": 0.1, "pneumatics.driving_pressures_kPa": [0.0, 12.0]}
+NODULE = {"contact.nodule_depth_mm": 6.0, "contact.nodule_radius_mm": 3.0, "contact.nodule_modulus_MPa": 2.0}
 FEW = {"indentation.steps": 8}
 
 
@@ -37,6 +38,11 @@ FEW = {"indentation.steps": 8}
             "object",
         ),
         ({"contact.object_modulus_MPa": 1e-4}, "object_modulus_MPa"),
+        ({"contact.nodule_depth_mm": 5.0}, "nodule_depth_mm"),
+        ({**SOFT, "contact.nodule_depth_mm": 5.0}, "nodule_radius_mm"),
+        ({**SOFT, **NODULE, "contact.object_thickness_mm": 20.0}, "object_thickness_mm"),
+        ({**SOFT, **NODULE, "contact.nodule_depth_mm": 4.0}, "nodule_depth_mm"),
+        ({**SOFT, **NODULE, "contact.nodule_modulus_MPa": 0.05}, "nodule_modulus_MPa"),
     ],
 )
 def test_what_no_soft_object_has_is_refused_with_its_key(change, key):
@@ -57,6 +63,15 @@ def test_the_record_says_what_the_object_is_made_of():
     section = state.shapes[-1].body
     assert np.ptp(section[-5:, 1]) < 0.3 and section[0, 1] > section[-1, 1] + 0.2
     assert state.face is None
+
+
+def test_a_nodule_presses_back():
+    plain, hard = (
+        evaluate("paper-dome", SOFT | FEW | more, model="solid").prediction.states[0] for more in ({}, NODULE)
+    )
+    for travel in (1.0, 2.0, 3.0):
+        less, more = (np.interp(travel, one.indentation, one.force) for one in (plain, hard))
+        assert 1.005 * less < more < 1.2 * less
 
 
 def test_other_models_and_fits_say_why_not():
@@ -87,6 +102,16 @@ def test_the_command_prints_a_soft_object_s_range_and_no_relaxation(tmp_path):
     assert done.returncode == 0, done.stderr
     assert re.search("object strained, [0-9.]+ mm", done.stdout)
     assert re.search("hysteresis not known: the object is soft", done.stdout)
+
+
+def test_a_nodule_adds_the_force_that_calculix_finds():
+    stored = json.loads((ROOT / "docs/background/soft-objects.json").read_text(encoding="utf-8"))
+    page = (ROOT / "docs/background/contact.md").read_text(encoding="utf-8")
+    bound = float(re.search(r"the force that the nodule adds is within (\d+) % from 0.5 mm", page)[1]) / 100.0
+    plain, hard = stored["nodules"]
+    seen = np.array(plain["travel_mm"]) >= 0.5
+    ours, there = (np.array(hard[key])[seen] - np.array(plain[key])[seen] for key in ("force_N", "calculix_force_N"))
+    assert (there > 0.0).all() and np.abs(ours / there - 1.0).max() <= bound
 
 
 def test_the_page_states_what_calculix_found():

@@ -66,11 +66,12 @@ def soft_object(scene: ResolvedDesign) -> "SoftBody | None":
     contact = scene.design.contact
     if contact.object_modulus_MPa is None:
         return None
-    from pneutouch.mechanics.soft.body import SoftBody
+    from pneutouch.mechanics.soft.body import Nodule, SoftBody
 
-    return SoftBody(
-        contact.object_modulus_MPa, contact.object_poisson_ratio, contact.object_thickness_mm, contact.ball_radius_mm
-    )
+    depth, radius, modulus = contact.nodule_depth_mm, contact.nodule_radius_mm, contact.nodule_modulus_MPa
+    nodule = None if depth is None or radius is None or modulus is None else Nodule(depth, radius, modulus)
+    stuff = (contact.object_modulus_MPa, contact.object_poisson_ratio, contact.object_thickness_mm)
+    return SoftBody(*stuff, contact.ball_radius_mm, nodule)
 
 
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:

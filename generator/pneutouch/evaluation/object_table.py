@@ -38,6 +38,7 @@ _CENTRAL: Changes = {
     "contact.object": "plate",
     **dict.fromkeys(("contact.friction", "contact.offset_mm", "contact.tilt_deg", "contact.shear_mm"), 0.0),
     **dict.fromkeys(("contact.object_modulus_MPa", "contact.object_thickness_mm", "contact.plate_rim_mm"), None),
+    **dict.fromkeys(("contact.nodule_depth_mm", "contact.nodule_radius_mm", "contact.nodule_modulus_MPa"), None),
 }
 """Contact whatever that of the design is: what it says of friction and place holds for its own object."""
 

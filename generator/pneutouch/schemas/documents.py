@@ -144,6 +144,7 @@ def contact(notes: bool = False) -> Schema:
         "plate_rim_mm": NUMBER,
         **{**sizes, "profile_mm": corners},
         **dict.fromkeys(("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm"), NUMBER),
+        **dict.fromkeys(("nodule_depth_mm", "nodule_radius_mm", "nodule_modulus_MPa"), NUMBER),
         "friction": any_of(NUMBER, {"const": "inf"}),
         "offset_mm": NUMBER,
         "tilt_deg": NUMBER,

@@ -20,6 +20,10 @@ LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
 _MOVABLE: tuple[ContactKind, ...] = ("plate", "ball", *LYING)
 """Objects that can stand off the axis and move sideways."""
 
+_NODULE = ("nodule_depth_mm", "nodule_radius_mm", "nodule_modulus_MPa")
+_COVER = 1.5
+"""Least depth of a nodule's middle over its radius: closer to the surface the field at it is not even."""
+
 LARGEST = 250.0
 """Greatest radius of an object, mm: that of the greatest plate."""
 
@@ -106,6 +110,13 @@ class ContactTable(Table):
     object_thickness_mm: float | None = number(
         None, unit="mm", low=0.2, high=500, help="Thickness of a soft layer on a rigid ground; left out: it is deep."
     )
+    nodule_depth_mm: float | None = number(
+        None, unit="mm", low=0.5, high=200, help="Depth of the middle of a stiffer ball in a deep soft block."
+    )
+    nodule_radius_mm: float | None = number(None, unit="mm", low=0.1, high=100, help="Radius of that ball.")
+    nodule_modulus_MPa: float | None = number(
+        None, unit="MPa", low=0.001, high=1e5, help="Young's modulus of that ball, greater than the block's."
+    )
     friction: Friction = Field(
         default=0.0,
         allow_inf_nan=True,
@@ -163,7 +174,7 @@ class ContactTable(Table):
     def _gives_way(self) -> "ContactTable":
         given = [
             key
-            for key in ("object_poisson_ratio", "object_thickness_mm")
+            for key in ("object_poisson_ratio", "object_thickness_mm", *_NODULE)
             if getattr(self, key) != type(self).model_fields[key].default
         ]
         if self.object_modulus_MPa is None:
@@ -176,12 +187,28 @@ class ContactTable(Table):
         if self.object == "ball" and self.object_thickness_mm is not None:
             problem = "object_thickness_mm of a ball: a soft ball is one body; only a plate is a layer"
             raise FieldsError(problem, "object", "object_thickness_mm")
+        if problem := self._bad_nodule():
+            raise FieldsError(problem, *_NODULE)
         other = [key for key in ("friction", "offset_mm", "tilt_deg", "shear_mm", "anywhere") if getattr(self, key)]
         if other:
             at = f"object_modulus_MPa with {other[0]} = {getattr(self, other[0])}"
             problem = f"{at}: a soft object presses on the axis, without friction"
             raise FieldsError(problem, "object_modulus_MPa", *other)
         return self
+
+    def _bad_nodule(self) -> str:
+        """What is wrong with the nodule of a soft object, in words; empty if nothing is."""
+        depth, radius, modulus = (getattr(self, key) for key in _NODULE)
+        if depth is radius is modulus is None:
+            return ""
+        if depth is None or radius is None or modulus is None:
+            return f"a nodule needs {', '.join(_NODULE)}"
+        if self.object != "plate" or self.object_thickness_mm is not None:
+            return "a nodule lies in a deep block: a plate without object_thickness_mm"
+        if depth < _COVER * radius:
+            return f"nodule_depth_mm = {depth:g} must be at least {_COVER:g} times nodule_radius_mm = {radius:g}"
+        stiffer = modulus > (self.object_modulus_MPa or 0.0)
+        return "" if stiffer else f"nodule_modulus_MPa = {modulus:g} must be greater than object_modulus_MPa"
 
     @model_validator(mode="after")
     def _stands_off_the_axis(self) -> "ContactTable":
@@ -270,7 +297,8 @@ class ContactTable(Table):
         if self.object_modulus_MPa is None:
             return "rigid"
         layer = "" if self.object_thickness_mm is None else f", {self.object_thickness_mm:g} mm on a rigid ground"
-        return f"soft ({self.object_modulus_MPa:g} MPa{layer})"
+        nodule = "" if self.nodule_radius_mm is None else f", a nodule of {self.nodule_radius_mm:g} mm in it"
+        return f"soft ({self.object_modulus_MPa:g} MPa{layer}{nodule})"
 
     @property
     def label(self) -> str:
@@ -296,7 +324,7 @@ class ContactTable(Table):
         """Keys of a soft object with their values; empty for a rigid one."""
         if self.object_modulus_MPa is None:
             return {}
-        keys = ("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm")
+        keys = ("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm", *_NODULE)
         return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
     def sizes(self) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.soft.body import RingCompliance, SoftBody
-from pneutouch.mechanics.soft.press import SoftPress
+from pneutouch.mechanics.soft.body import Nodule, RingCompliance, SoftBody
+from pneutouch.mechanics.soft.press import STRAINED, SoftPress
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import inflate, state_at
@@ -46,6 +46,32 @@ def test_hertz_s_pressure_makes_hertz_s_surface(reach, modulus, poisson):
     slope = -np.pi * 0.05 / (2 * plane * reach) * radii[inside]
     assert (rings.slopes @ forces)[inside] == pytest.approx(slope, abs=0.015 * np.abs(slope).max())
     assert rings.matrix == pytest.approx(rings.matrix.T)
+
+
+def test_a_nodule_of_the_same_modulus_is_none_and_a_deep_small_one_takes_what_eshelby_says():
+    radii, widths, forces = hertz(1.0, 0.05)
+    even = RingCompliance(SoftBody(0.1, 0.5), radii, widths, 40.0)
+    none = RingCompliance(SoftBody(0.1, 0.5, nodule=Nodule(20.0, 2.0, 0.1)), radii, widths, 40.0)
+    assert none.matrix == pytest.approx(even.matrix)
+    # Far below a point force F an incompressible half-space is strained by F/(2 pi mu d^2) along the axis, and by half of
+    # it across; a rigid ball's stresslet works 20/3 pi mu b^3 e:e (Batchelor 1970, doi:10.1017/S0022112070000745).
+    depth, shear, force = 20.0, 0.1 / 3.0, forces.sum()
+    along = 2.0 * force / (4.0 * np.pi * shear * depth**2)
+    stiff = RingCompliance(SoftBody(0.1, 0.5, nodule=Nodule(depth, 2.0, 1e6)), radii, widths, 40.0)
+    lost = forces @ (even.matrix - stiff.matrix) @ forces
+    assert lost == pytest.approx(20.0 / 3.0 * np.pi * shear * 2.0**3 * 1.5 * along**2, rel=0.02)
+    # Forces, slopes and second derivatives are those of one work.
+    near = Nodule(3.0, 1.5, 5.0)
+
+    def work(at):
+        return 0.5 * forces @ RingCompliance(SoftBody(0.1, 0.4, nodule=near), at, widths, 3.0).matrix @ forces
+
+    rings, step = RingCompliance(SoftBody(0.1, 0.4, nodule=near), radii, widths, 3.0), 1e-5
+    moved = [radii + sign * step * (np.arange(len(radii)) == 60) for sign in (1.0, -1.0)]
+    slope = (work(moved[0]) - work(moved[1])) / (2.0 * step)
+    assert slope == pytest.approx(forces[60] * (rings.slopes @ forces)[60], rel=1e-4)
+    second = (work(moved[0]) + work(moved[1]) - 2.0 * work(radii)) / step**2
+    assert second == pytest.approx(rings.curving(forces)[60, 60], rel=0.02)
 
 
 def test_far_away_a_force_is_a_point_force():
@@ -148,6 +174,19 @@ def test_the_range_ends_where_the_object_is_strained():
     state, surface = path.states[-1], path.undersides[-1]
     top = state.positions[DOME.mesh.outer_apex, 1]
     assert surface.underside(np.zeros(1))[0][0] == pytest.approx(top, abs=0.06)
+
+
+def test_a_layer_is_strained_by_its_thickness():
+    path = SoftPress(DOME, STATES[0.0], SOFT, SoftBody(0.05, thickness=1.0))
+    found = path.to(2.5)
+    point = path.point(found)
+    assert float(found.radii[found.forces > 0.0].max()) * DOME.length > 2.0
+    assert point.strain == pytest.approx(point.lift / STRAINED)
+    # The event is where the strain is the greatest that is allowed.
+    press = indent(DOME, STATES[0.0], PressSettings(6.0, steps=24, soft=SoftBody(0.005)))
+    (event,) = [one for one in press.events if one.kind == "strained"]
+    again = SoftPress(DOME, STATES[0.0], SOFT, SoftBody(0.005))
+    assert again.point(again.to(event.indentation)).strain == pytest.approx(1.0, abs=0.03)
 
 
 def test_an_object_that_gives_way_at_once_is_refused():

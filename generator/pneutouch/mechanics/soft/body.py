@@ -13,20 +13,32 @@ _HIGHEST, _STEP, _TO_WIDTH = 60.0, 0.2, 5.0
 
 
 @dataclass(frozen=True, slots=True)
+class Nodule:
+    """A ball in a half-space under the dome's axis: ``depth`` of its middle and ``radius``, mm; ``modulus``, MPa."""
+
+    depth: float
+    radius: float
+    modulus: float
+
+
+@dataclass(frozen=True, slots=True)
 class SoftBody:
     """A soft object: Young's ``modulus`` (MPa), Poisson ratio, and the ``thickness`` (mm) of a layer that is bonded to
-    a rigid ground; None: a half-space. ``radius`` of its surface, mm, as of a ball; None: it is flat."""
+    a rigid ground; None: a half-space. ``radius`` of its surface, mm, as of a ball; None: it is flat. ``nodule``: a
+    stiffer ball inside, of the same Poisson ratio; None: it is even."""
 
     modulus: float
     poisson: float = 0.49
     thickness: float | None = None
     radius: float | None = None
+    nodule: Nodule | None = None
 
     @property
     def label(self) -> str:
         """The material in words."""
         layer = "" if self.thickness is None else f", a layer of {self.thickness:g} mm"
-        return f"soft ({self.modulus:g} MPa{layer})"
+        inside = "" if self.nodule is None else f", a nodule of {self.nodule.radius:g} mm in it"
+        return f"soft ({self.modulus:g} MPa{layer}{inside})"
 
     def deflection(self, k: Array) -> Array:
         """Deflection over pressure at wavenumbers k (1/mm), mm/MPa."""
@@ -34,6 +46,29 @@ class SoftBody:
         if self.thickness is None:
             return half_space(k, shear, self.poisson)
         return bonded_layer(k, self.thickness, shear, self.poisson)
+
+    def taken(self, k: Array) -> Array:
+        """What the nodule takes of the deflection (2, m): the square of the sum of each row, by pressures of the
+        wavenumbers k (1/mm), is the loss of work, twice, in N mm/MPa2.
+
+        Eshelby's equivalent inclusion in the even field that the half-space has at the nodule's middle (Mura,
+        Micromechanics of Defects in Solids, 1987, sec. 22, doi:10.1007/978-94-009-3489-4): of the strain without its
+        change of volume, and of that change."""
+        out = np.zeros((2, len(k)))
+        nodule, nu = self.nodule, self.poisson
+        if nodule is None:
+            return out
+        shear, depth, stiffer = 0.5 * self.modulus / (1.0 + nu), k * nodule.depth, nodule.modulus / self.modulus - 1.0
+        volume = 4.0 / 3.0 * np.pi * nodule.radius**3
+        shape, swelling = 2.0 * (4.0 - 5.0 * nu) / (15.0 * (1.0 - nu)), (1.0 + nu) / (3.0 * (1.0 - nu))
+        # Johnson, Contact Mechanics, ch. 3: strain along the axis, and change of volume.
+        along = ((1.0 - 2.0 * nu) / 3.0 + depth) * np.exp(-depth) / (2.0 * shear)
+        changed = (1.0 - 2.0 * nu) * np.exp(-depth) / shear
+        out[0] = np.sqrt(3.0 * shear * volume * stiffer / (1.0 + shape * stiffer)) * along
+        if nu < 0.5:
+            bulk = self.modulus / (3.0 * (1.0 - 2.0 * nu))
+            out[1] = np.sqrt(bulk * volume * stiffer / (1.0 + swelling * stiffer)) * changed
+        return out
 
 
 @dataclass(frozen=True)
@@ -63,6 +98,17 @@ class RingCompliance:
         return np.asarray(self.body.deflection(k) * k * _STEP / self.reach / (2.0 * np.pi))
 
     @cached_property
+    def _taken(self) -> Array:
+        """`SoftBody.taken` of a force at each wavenumber, times the step of the integral (2, k)."""
+        k = self._wavenumbers
+        return np.asarray(self.body.taken(k) * k * _STEP / self.reach / (2.0 * np.pi))
+
+    def _deflected(self, waves: Array) -> Array:
+        """Deflection by waves of force (..., k), wave by wave: the nodule couples them."""
+        out = waves * self._by_wave
+        return out if self.body.nodule is None else np.asarray(out - waves @ self._taken.T @ self._taken)
+
+    @cached_property
     def _waves(self) -> Array:
         from scipy.special import j0
 
@@ -71,7 +117,7 @@ class RingCompliance:
     @cached_property
     def matrix(self) -> Array:
         """Deflection at the rings by a force on each, mm/N (n, n); symmetric."""
-        return np.asarray((self._waves * self._by_wave) @ self._waves.T)
+        return np.asarray(self._deflected(self._waves) @ self._waves.T)
 
     @cached_property
     def _slopes(self) -> Array:
@@ -82,14 +128,13 @@ class RingCompliance:
     @cached_property
     def slopes(self) -> Array:
         """Slope dw/dr at the rings (rows) by a force on each, 1/N (n, n)."""
-        return np.asarray(-(self._slopes * (self._wavenumbers * self._by_wave)) @ self._waves.T)
+        return np.asarray(-self._deflected(self._slopes * self._wavenumbers) @ self._waves.T)
 
     def curving(self, forces: Array) -> Array:
         """Second derivatives, by the radii, of half the work of forces (n,) on the deflection, N/mm (n, n)."""
         k = self._wavenumbers
-        square = k**2 * self._by_wave
-        both = np.outer(forces, forces) * ((self._slopes * square) @ self._slopes.T)
-        bent = (self._slopes / np.outer(self.radii, k) - self._waves) @ (square * (forces @ self._waves))
+        both = np.outer(forces, forces) * (self._deflected(self._slopes * k) @ (self._slopes * k).T)
+        bent = (k * self._slopes / self.radii[:, None] - k**2 * self._waves) @ self._deflected(forces @ self._waves)
         both[np.diag_indices_from(both)] += forces * bent
         return np.asarray(both)
 
@@ -97,4 +142,4 @@ class RingCompliance:
         """Deflection (m,) at radii r (m,), mm, under forces (n,), N."""
         from scipy.special import j0
 
-        return np.asarray(j0(np.outer(r, self._wavenumbers)) @ (self._by_wave * (forces @ self._waves)))
+        return np.asarray(j0(np.outer(r, self._wavenumbers)) @ self._deflected(forces @ self._waves))
