@@ -12,18 +12,27 @@ from hypothesis import strategies as st
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.soft.body import Nodule, RingCompliance, SoftBody
-from pneutouch.mechanics.soft.press import STRAINED, SoftPress
-from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.soft.press import STRAINED, SoftPress, soft_press
+from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.solid.indent import indent as rigid_press
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA
 
 DOME = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17))
 STATES = {p: state_at(DOME, p, inflate(DOME, to_pressure=p) if p else None) for p in (0.0, 22.0 * KPA)}
 SOFT = PressSettings(3.0, steps=6, soft=SoftBody(0.1))
+
+
+def indent(solid, free, press):
+    """Press by the object that the settings have."""
+    if press.soft is None:
+        return rigid_press(solid, free, press)
+    return soft_press(solid, free, press, press.soft, StrainProbe(solid))
 
 
 def hertz(reach: float, peak: float, count: int = 150):

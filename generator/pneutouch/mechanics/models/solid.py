@@ -277,7 +277,13 @@ def press_settings(sensor: Sensor) -> PressSettings:
 def _state(guides: _Paths, sensor: Sensor, probe: StrainProbe, free: FreeState, pressure: float) -> SensorState:
     """State at a driving pressure (MPa), pressed from ``free``; ``guides`` at it lead the path, which joins them."""
     test, press = sensor.protocol, press_settings(sensor)
-    pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
+    if press.soft is None:
+        pressed = indent(probe.solid, free, press, probe, guides.get(pressure, ()))
+    else:
+        # Most objects are rigid: the modules of soft ones are loaded only here.
+        from pneutouch.mechanics.soft.press import soft_press
+
+        pressed = soft_press(probe.solid, free, press, press.soft, probe)
     guides[pressure] = [pressed.solved, *guides.get(pressure, ())[:1]]
     unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted(

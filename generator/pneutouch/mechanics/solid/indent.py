@@ -153,11 +153,6 @@ def indent(
     `complete` of the result is False if an event ended the path before the depth. Raises NoConvergenceError only if
     there is no equilibrium at first contact, and UnreachableLoadError for a pressure below absolute vacuum.
     """
-    if press.soft is not None:
-        # Most objects are rigid: the modules of soft ones are loaded only here.
-        from pneutouch.mechanics.soft.press import soft_press
-
-        return soft_press(solid, free, press, press.soft, probe or StrainProbe(solid))
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
     follower, length, plate = follower_of(solid, free, press, touch, guides), solid.length, touch.body
     recorder = PressRecorder(solid, free, touch, probe or StrainProbe(solid))
