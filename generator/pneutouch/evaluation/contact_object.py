@@ -62,7 +62,7 @@ def contact_object(scene: ResolvedDesign) -> "RigidObject | None":
 
 
 def soft_object(scene: ResolvedDesign) -> "SoftBody | None":
-    """What the object of a design is made of; None for a rigid one."""
+    """Material of the object of a design; None for a rigid one."""
     contact = scene.design.contact
     if contact.object_modulus_MPa is None:
         return None

@@ -20,7 +20,7 @@ from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.read import Changes
 
 ObjectProperty = Literal["radius", "modulus"]
-"""What distinguishes the objects of a table."""
+"""Property that distinguishes the objects of a table."""
 
 NODES = {"radius": 7, "modulus": 6}
 GRID, LEAST = (121, 1200), 0.03

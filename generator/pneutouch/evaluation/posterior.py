@@ -1,4 +1,4 @@
-"""What readings at several driving pressures tell of an object and its force: posterior, region and intervals."""
+"""Object and force by readings at several driving pressures: posterior, region and intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

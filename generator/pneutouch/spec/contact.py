@@ -197,7 +197,7 @@ class ContactTable(Table):
         return self
 
     def _bad_nodule(self) -> str:
-        """What is wrong with the nodule of a soft object, in words; empty if nothing is."""
+        """Fault of the nodule of a soft object, in words; empty if it has none."""
         depth, radius, modulus = (getattr(self, key) for key in _NODULE)
         if depth is radius is modulus is None:
             return ""
@@ -293,7 +293,7 @@ class ContactTable(Table):
 
     @property
     def stuff(self) -> str:
-        """What the object is made of, in words: ``rigid``, or its modulus and thickness."""
+        """Material of the object, in words: ``rigid``, or its modulus and thickness."""
         if self.object_modulus_MPa is None:
             return "rigid"
         layer = "" if self.object_thickness_mm is None else f", {self.object_thickness_mm:g} mm on a rigid ground"

@@ -115,7 +115,7 @@ def _pressures_kPa(options: DiscriminationOptions, scene: ResolvedDesign) -> lis
 
 
 def _property(options: DiscriminationOptions) -> ObjectProperty:
-    """What is unknown of the object beside its force. Raises InputError for what a cavity alone cannot tell."""
+    """Unknown property of the object beside its force. Raises InputError for what a cavity alone cannot tell."""
     names = set(options.unknown)
     for told_of in ("radius", "modulus"):
         if names == {told_of, "force"}:

@@ -48,7 +48,7 @@ class SoftBody:
         return bonded_layer(k, self.thickness, shear, self.poisson)
 
     def taken(self, k: Array) -> Array:
-        """What the nodule takes of the deflection (2, m): the square of the sum of each row, by pressures of the
+        """Part of the deflection that the nodule takes (2, m): the square of the sum of each row, by pressures of the
         wavenumbers k (1/mm), is the loss of work, twice, in N mm/MPa2.
 
         Eshelby's equivalent inclusion in the even field that the half-space has at the nodule's middle (Mura,
