@@ -272,6 +272,8 @@ def test_travel_tells_three_silicones_and_pressures_some_of_it():
         ({"unknown": ["radius"]}, "radius,force or modulus,force"),
         ({"unknown": ["modulus", "force"], "noise_kPa": 1.0, "error_percent": 10.0}, "read the travel too"),
         ({"unknown": ["modulus", "force"], "moduli_MPa": [0.01]}, "least_modulus_MPa"),
+        ({"unknown": ["modulus", "force"], "classes_mm": [8.0]}, "radius,force"),
+        ({"unknown": ["radius", "force"], "thickness_mm": 3.0}, "modulus,force"),
     ],
 )
 def test_what_no_reading_tells_is_refused_with_what_would(change, says):

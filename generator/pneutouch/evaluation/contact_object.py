@@ -16,6 +16,7 @@ from pneutouch.mechanics.sensor import Filling, RigidBase
 from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, MOST_CELLS, object_cells
 from pneutouch.mechanics.solid.object_contact import RIM, first_contact, flat_radius
 from pneutouch.shape.hemisphere import no_hemisphere
+from pneutouch.spec.contact import NODULE
 from pneutouch.spec.part import ClampedFlange
 from pneutouch.units import ML
 from pneutouch.wording import data_of
@@ -68,10 +69,10 @@ def soft_object(scene: ResolvedDesign) -> "SoftBody | None":
         return None
     from pneutouch.mechanics.soft.body import Nodule, SoftBody
 
-    depth, radius, modulus = contact.nodule_depth_mm, contact.nodule_radius_mm, contact.nodule_modulus_MPa
-    nodule = None if depth is None or radius is None or modulus is None else Nodule(depth, radius, modulus)
+    sizes = [getattr(contact, key) for key in NODULE]
+    nodule = None if None in sizes else Nodule(*sizes)
     stuff = (contact.object_modulus_MPa, contact.object_poisson_ratio, contact.object_thickness_mm)
-    return SoftBody(*stuff, contact.ball_radius_mm, nodule)
+    return SoftBody(*stuff, nodule, contact.label)
 
 
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
@@ -86,7 +87,7 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     return {
         "contact": {
             "object": contact.object,
-            "label": f"{contact.stuff} {contact.label}" if contact.softness else contact.label,
+            "label": contact.label,
             **sizes,
             **contact.softness,
             "friction": friction,

@@ -16,13 +16,13 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import DesignSource
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.reader import curve_of
-from pneutouch.spec.contact import ContactTable
+from pneutouch.spec.contact import SOFTNESS, ContactTable
 from pneutouch.spec.read import Changes
 
 ObjectProperty = Literal["radius", "modulus"]
 """Property that distinguishes the objects of a table."""
 
-NODES = {"radius": 7, "modulus": 6}
+NODES = {"radius": 7, "modulus": 5}
 GRID, LEAST = (121, 1200), 0.03
 """Numbers of objects that press the sensor; objects and forces of the grid, and its least force over the greatest that
 every reading of the least object holds: our choices. Readings between nodes are within 0.5 % of those of a press
@@ -37,8 +37,7 @@ _STEPS = 10
 _CENTRAL: Changes = {
     "contact.object": "plate",
     **dict.fromkeys(("contact.friction", "contact.offset_mm", "contact.tilt_deg", "contact.shear_mm"), 0.0),
-    **dict.fromkeys(("contact.object_modulus_MPa", "contact.object_thickness_mm", "contact.plate_rim_mm"), None),
-    **dict.fromkeys(("contact.nodule_depth_mm", "contact.nodule_radius_mm", "contact.nodule_modulus_MPa"), None),
+    **{f"contact.{key}": getattr(ContactTable(), key) for key in ("plate_rim_mm", *SOFTNESS)},
 }
 """Contact whatever that of the design is: what it says of friction and place holds for its own object."""
 
@@ -131,7 +130,7 @@ def _keys(told: ObjectProperty, node: float, thickness_mm: float | None) -> Chan
     """Keys of a design for an object of a curvature or compliance."""
     if told == "radius":
         ball = {"contact.object": "ball", "contact.ball_radius_mm": 1.0 / node} if node else {}
-        return {**_CENTRAL, "contact.object_poisson_ratio": ContactTable().object_poisson_ratio, **ball}
+        return {**_CENTRAL, **ball}
     modulus_MPa = 1.0 / node if node else RIGID
     block = {"contact.object_modulus_MPa": modulus_MPa, "contact.object_thickness_mm": thickness_mm}
     return {**_CENTRAL, **block, "indentation.steps": _STEPS}

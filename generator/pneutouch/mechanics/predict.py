@@ -106,8 +106,8 @@ def contact_words(protocol: IndentationProtocol) -> str:
     hold = f"friction coefficient {protocol.friction:g} (Coulomb)" if protocol.friction else "frictionless"
     hold = "a surface that grips" if protocol.friction == np.inf else hold
     if protocol.off_axis is None:
-        stuff = "rigid" if protocol.soft is None else protocol.soft.label
-        return f"{stuff} {body}, {hold}, central and straight down"
+        body = f"rigid {body}" if protocol.soft is None else protocol.soft.label
+        return f"{body}, {hold}, central and straight down"
     places = [f"its axis {protocol.offset:g} mm off the dome's"] if protocol.offset else []
     places += ["endless across its plane of symmetry"] if protocol.body is not None and protocol.body.lying else []
     places += [f"leaning by {np.degrees(protocol.tilt):.4g}°"] if protocol.tilt else []
@@ -140,5 +140,7 @@ def _cheapest(sensor: Sensor, tolerance: float, ask: _Ask) -> tuple[SensorModel,
             break
         passed.append(f"{name}: {answer.limitation.why}")
     error = model.stated_error(sensor)
-    why = f"the cheapest whose stated error, {error:.1%} in sensitivity, meets {tolerance:.1%}"
+    why = f"the cheapest whose stated error, {error:.1%} in sensitivity, meets {sequence.tolerance:.1%}"
+    if sequence.tolerance > tolerance:
+        why += f" (not the default of {tolerance:.1%}: no model states so little for this sensor)"
     return model, answer, "; ".join([why, *(f"passed over {text}" for text in passed)])

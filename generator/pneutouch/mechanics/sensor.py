@@ -151,7 +151,7 @@ class IndentationProtocol:
         if self.off_axis is not None:
             return self.off_axis
         if self.soft is not None:
-            return f"the object is {self.soft.label}"
+            return f"the object is a {self.soft.label}"
         if self.body is not None:
             return f"the object is a {self.body.label}, not a plate"
         if self.friction > 0.0:

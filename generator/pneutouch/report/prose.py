@@ -47,18 +47,22 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
 
 
 def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
-    """Words for a rigid object and its place: friction before its name, or after it for a coefficient."""
+    """Words for an object and, if it is rigid, its place: friction before its name, or after it for a coefficient."""
+    if contact.softness:
+        return f"{contact.label}, {contact.hold}"
     place = f", {contact.place}" if contact.off_axis else ""
     if 0.0 < contact.friction < float("inf"):
-        return f"{contact.stuff} {shape.replace(', ', ' ')}{name}, {contact.hold}{place}"
-    return f"{contact.stuff}, {shape}{contact.hold} {name}{place}"
+        return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}{place}"
+    return f"rigid, {shape}{contact.hold} {name}{place}"
 
 
 def presser(scene: ResolvedDesign) -> str:
     """Words for the object that presses the sensor, such as ``rigid ball of 5 mm radius``."""
     contact = scene.design.contact
+    if contact.softness:
+        return contact.label
     size = f" of {scene.design.indentation.plate_diameter_mm:g} mm" if contact.is_plate else ""
-    return f"{contact.stuff} {contact.label}{size}"
+    return f"rigid {contact.label}{size}"
 
 
 def limits_of_use(scene: ResolvedDesign) -> str:

@@ -37,7 +37,7 @@ from pneutouch.schemas.pieces import (
     record,
 )
 from pneutouch.spec.campaign import Rig
-from pneutouch.spec.contact import SIZES, ContactTable
+from pneutouch.spec.contact import SIZES, SOFTNESS, ContactTable
 from pneutouch.spec.target import Target
 from pneutouch.wording import data_of
 
@@ -143,8 +143,7 @@ def contact(notes: bool = False) -> Schema:
         "plate_diameter_mm": NUMBER,
         "plate_rim_mm": NUMBER,
         **{**sizes, "profile_mm": corners},
-        **dict.fromkeys(("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm"), NUMBER),
-        **dict.fromkeys(("nodule_depth_mm", "nodule_radius_mm", "nodule_modulus_MPa"), NUMBER),
+        **dict.fromkeys(SOFTNESS, NUMBER),
         "friction": any_of(NUMBER, {"const": "inf"}),
         "offset_mm": NUMBER,
         "tilt_deg": NUMBER,

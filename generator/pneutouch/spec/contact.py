@@ -20,7 +20,10 @@ LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
 _MOVABLE: tuple[ContactKind, ...] = ("plate", "ball", *LYING)
 """Objects that can stand off the axis and move sideways."""
 
-_NODULE = ("nodule_depth_mm", "nodule_radius_mm", "nodule_modulus_MPa")
+NODULE = ("nodule_depth_mm", "nodule_radius_mm", "nodule_modulus_MPa")
+SOFTNESS = ("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm", *NODULE)
+"""Keys of a soft object; only the first is needed."""
+
 _COVER = 1.5
 """Least depth of a nodule's middle over its radius: closer to the surface the field at it is not even."""
 
@@ -172,11 +175,7 @@ class ContactTable(Table):
 
     @model_validator(mode="after")
     def _gives_way(self) -> "ContactTable":
-        given = [
-            key
-            for key in ("object_poisson_ratio", "object_thickness_mm", *_NODULE)
-            if getattr(self, key) != type(self).model_fields[key].default
-        ]
+        given = [key for key in SOFTNESS[1:] if getattr(self, key) != type(self).model_fields[key].default]
         if self.object_modulus_MPa is None:
             if given:
                 raise FieldsError(f"{given[0]} is of a soft object; give object_modulus_MPa as well", *given)
@@ -188,7 +187,7 @@ class ContactTable(Table):
             problem = "object_thickness_mm of a ball: a soft ball is one body; only a plate is a layer"
             raise FieldsError(problem, "object", "object_thickness_mm")
         if problem := self._bad_nodule():
-            raise FieldsError(problem, *_NODULE)
+            raise FieldsError(problem, *NODULE)
         other = [key for key in ("friction", "offset_mm", "tilt_deg", "shear_mm", "anywhere") if getattr(self, key)]
         if other:
             at = f"object_modulus_MPa with {other[0]} = {getattr(self, other[0])}"
@@ -198,11 +197,11 @@ class ContactTable(Table):
 
     def _bad_nodule(self) -> str:
         """Fault of the nodule of a soft object, in words; empty if it has none."""
-        depth, radius, modulus = (getattr(self, key) for key in _NODULE)
+        depth, radius, modulus = (getattr(self, key) for key in NODULE)
         if depth is radius is modulus is None:
             return ""
         if depth is None or radius is None or modulus is None:
-            return f"a nodule needs {', '.join(_NODULE)}"
+            return f"a nodule needs {', '.join(NODULE)}"
         if self.object != "plate" or self.object_thickness_mm is not None:
             return "a nodule lies in a deep block: a plate without object_thickness_mm"
         if depth < _COVER * radius:
@@ -292,19 +291,17 @@ class ContactTable(Table):
         return usual and not self.friction and not self.off_axis
 
     @property
-    def stuff(self) -> str:
-        """Material of the object, in words: ``rigid``, or its modulus and thickness."""
-        if self.object_modulus_MPa is None:
-            return "rigid"
-        layer = "" if self.object_thickness_mm is None else f", {self.object_thickness_mm:g} mm on a rigid ground"
-        nodule = "" if self.nodule_radius_mm is None else f", a nodule of {self.nodule_radius_mm:g} mm in it"
-        return f"soft ({self.object_modulus_MPa:g} MPa{layer}{nodule})"
-
-    @property
     def label(self) -> str:
-        """Object in words, with its sizes; a plate without them."""
+        """Object in words, with its sizes; a plate without them, a soft one with what it is made of."""
         widest = max((corner[0] for corner in self.profile_mm or ()), default=0.0)
-        return str(_OBJECTS[self.object]["label"]).format(**self.sizes(), diameter_mm=2 * widest)
+        label = str(_OBJECTS[self.object]["label"]).format(**self.sizes(), diameter_mm=2 * widest)
+        if self.object_modulus_MPa is None:
+            return label
+        stuff = [f"{self.object_modulus_MPa:g} MPa"]
+        stuff += [] if self.object_thickness_mm is None else [f"{self.object_thickness_mm:g} mm on a rigid ground"]
+        if self.nodule_radius_mm is not None:
+            stuff.append(f"with a nodule of {self.nodule_radius_mm:g} mm radius, {self.nodule_depth_mm:g} mm deep")
+        return f"soft {'block' if self.is_plate else label} ({', '.join(stuff)})"
 
     @property
     def hold(self) -> str:
@@ -316,16 +313,14 @@ class ContactTable(Table):
     @property
     def words(self) -> str:
         """Object, friction and, if it is not axisymmetric, place of contact in words."""
-        stuff = [] if self.object_modulus_MPa is None else [self.stuff]
-        return ", ".join([self.label, *stuff, self.hold, *([self.place] if self.off_axis else [])])
+        return ", ".join([self.label, self.hold, *([self.place] if self.off_axis else [])])
 
     @property
     def softness(self) -> dict[str, float]:
         """Keys of a soft object with their values; empty for a rigid one."""
         if self.object_modulus_MPa is None:
             return {}
-        keys = ("object_modulus_MPa", "object_poisson_ratio", "object_thickness_mm", *_NODULE)
-        return {key: value for key in keys if (value := getattr(self, key)) is not None}
+        return {key: value for key in SOFTNESS if (value := getattr(self, key)) is not None}
 
     def sizes(self) -> dict[str, Any]:
         """Keys in `SIZES` of this object with their values; empty for a plate."""

@@ -71,7 +71,7 @@ def discriminate(
     single = int(np.log(areas[:, :-1]).mean(axis=0).argmin())
     pairs = zip(cases, areas, strict=True)
     told = tuple(_told(posterior, told_of, case, float(row[-1] / row[single]), single) for case, row in pairs)
-    _check_told(posterior, told_of, cases)
+    _check_told(told, posterior, told_of)
     plan = None if options.plan is None else _planned(posterior, tabulated, options.plan, cases, told_of)
     return DiscriminationRecord(
         design=scene.name,
@@ -133,7 +133,13 @@ def _property(options: DiscriminationOptions) -> ObjectProperty:
 
 
 def _check(options: DiscriminationOptions, told_of: ObjectProperty) -> None:
-    """Raise InputError for objects that cannot be told."""
+    """Raise InputError for options of objects of the other kind, and for objects that cannot be told."""
+    blocks, balls = ("moduli_MPa", "least_modulus_MPa", "thickness_mm"), ("classes_mm", "least_radius_mm")
+    others, instead = (blocks, "modulus,force") if told_of == "radius" else (balls, "radius,force")
+    for key in others:
+        if getattr(options, key) != type(options).model_fields[key].default:
+            problem = f"is of other objects: the {told_of} is told"
+            raise InputError(problem, key=key, value=getattr(options, key), remedy=f"give `unknown` {instead}")
     least = {"radius": options.least_radius_mm, "modulus": options.least_modulus_MPa}[told_of]
     keys = {"radius": ("classes_mm", "least_radius_mm"), "modulus": ("moduli_MPa", "least_modulus_MPa")}[told_of]
     for value in getattr(options, keys[0]):
@@ -142,17 +148,14 @@ def _check(options: DiscriminationOptions, told_of: ObjectProperty) -> None:
             raise InputError(problem, key=keys[0], value=value, remedy=f"lower `{keys[1]}`")
 
 
-def _check_told(posterior: Posterior, told_of: ObjectProperty, cases: Sequence[tuple[float, float]]) -> None:
+def _check_told(told: Sequence[ToldObject], posterior: Posterior, told_of: ObjectProperty) -> None:
     """Raise InputError if the readings tell nothing of the objects."""
-    table, shares = posterior.table, []
-    for case in cases:
-        weights = posterior.of(table.at(*case), range(len(table.pressures_kPa))).sum(axis=1)
-        low, high = interval(table.objects, weights)
-        shares.append((high - low) / float(table.objects[-1]))
-    if np.mean(shares) > _UNTOLD:
+    intervals = [one.curvature_interval_per_mm or one.compliance_interval_per_MPa or (0.0, 0.0) for one in told]
+    share = float(np.diff(intervals).mean() / posterior.table.objects[-1])
+    if share > _UNTOLD:
         travel = "" if posterior.travel_noise else "; read the travel too (`travel_noise_mm`), which tells a modulus"
         raise InputError(
-            f"the readings do not tell the {told_of}: in the mean its interval holds {np.mean(shares):.0%} of all",
+            f"the readings do not tell the {told_of}: in the mean its interval holds {share:.0%} of all",
             key="unknown",
             remedy=f"take driving pressures farther apart, less noise or a smaller error{travel}",
         )

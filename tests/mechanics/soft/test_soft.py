@@ -20,6 +20,7 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.disc import CorrugatedDisc
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA
 
@@ -104,9 +105,9 @@ def test_a_deep_layer_is_a_half_space_and_a_thin_one_is_stiffer():
 @pytest.mark.parametrize("pressure", STATES)
 def test_a_stiff_object_is_a_rigid_one(pressure):
     free = STATES[pressure]
-    for body, soft in ((None, SoftBody(1e4)), (ball(12.0), SoftBody(1e4, radius=12.0))):
+    for body, soft in ((None, SoftBody(1e4)), (ball(12.0), SoftBody(1e4))):
         rigid = indent(DOME, free, replace(SOFT, soft=None, body=body))
-        found = indent(DOME, free, replace(SOFT, soft=soft))
+        found = indent(DOME, free, replace(SOFT, soft=soft, body=body))
         for name in ("force", "rise", "volume"):
             first, other = found.column(name)[1:], rigid.column(name)[1:]
             # At first few points touch, and those of both are not the same.
@@ -129,10 +130,11 @@ def test_a_hard_dome_presses_a_soft_half_space_as_hertz_says():
 
 
 @pytest.mark.parametrize("pressure", STATES)
-@pytest.mark.parametrize("body", [SoftBody(0.05), SoftBody(0.1, thickness=3.0), SoftBody(0.5, radius=8.0)])
-def test_slopes_are_those_of_the_path_and_no_point_passes_through(pressure, body):
-    free = STATES[pressure]
-    path = SoftPress(DOME, free, SOFT, body)
+@pytest.mark.parametrize(
+    ("body", "rigid"), [(SoftBody(0.05), None), (SoftBody(0.1, thickness=3.0), None), (SoftBody(0.5), ball(8.0))]
+)
+def test_slopes_are_those_of_the_path_and_no_point_passes_through(pressure, body, rigid):
+    path = SoftPress(DOME, STATES[pressure], replace(SOFT, body=rigid), body)
     # Points that come on the way jump the slope, but not the path: means over some of them are compared.
     states = [path.to(travel) for travel in np.linspace(1.4, 1.6, 11)]
     here, travel = states[-1], np.array([one.travel for one in states])
@@ -198,7 +200,25 @@ def test_a_layer_is_strained_by_its_thickness():
     assert again.point(again.to(event.indentation)).strain == pytest.approx(1.0, abs=0.03)
 
 
-def test_an_object_that_gives_way_at_once_is_refused():
+def test_an_object_that_gives_way_in_the_first_step_is_refused_and_few_steps_are_not():
     with pytest.raises(InputError) as error:
-        indent(DOME, STATES[0.0], PressSettings(6.0, steps=3, soft=SoftBody(0.001)))
+        indent(DOME, STATES[0.0], PressSettings(6.0, steps=1, soft=SoftBody(0.001)))
     assert error.value.key == "contact.object_modulus_MPa"
+    few = indent(DOME, STATES[0.0], PressSettings(3.0, steps=2, soft=SoftBody(0.5)))
+    assert few.complete and len(few.states) == 3
+
+
+def test_a_stiff_ball_ends_at_its_flank_and_a_corrugated_disc_is_met_at_every_crest():
+    fine = SolidModel(dome(Hemisphere(9.25, 1.5), arc=48), neo_hookean(0.17))
+    rigid, soft = (
+        indent(fine, state_at(fine, 0.0), PressSettings(6.0, body=ball(2.0), soft=soft))
+        for soft in (None, SoftBody(1e3))
+    )
+    (one,), (other,) = ([e.indentation for e in path.events if e.kind == "object_edge"] for path in (rigid, soft))
+    assert other == pytest.approx(one, abs=0.4)
+    # The crests of a corrugated disc are as high as its pole: a block meets them all, however far out they are.
+    disc = SolidModel(dome(CorrugatedDisc(10.0, 0.5, cavity_depth=3.0, rise=1.0)), neo_hookean(0.17))
+    path = SoftPress(disc, state_at(disc, 0.0), PressSettings(0.3), SoftBody(0.1))
+    found = path.to(0.05)
+    touching = found.radii[found.forces > 0.0] * disc.length
+    assert touching.min() < 2.0 and touching.max() > 6.0

@@ -27,10 +27,12 @@ DEFAULT_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class ModelSequence:
-    """Names of the models to try, cheapest first, and texts that say why others were passed over."""
+    """Names of the models to try, cheapest first, texts that say why others were passed over, and the tolerance that
+    they meet: the one asked for, or the best model's error where that is more than the default."""
 
     models: tuple[str, ...]
     passed: tuple[str, ...]
+    tolerance: float
 
 
 def model_named(name: str) -> SensorModel:
@@ -63,7 +65,7 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     best = usual_model(sensor)
     least = stated_error(best, sensor)
     if tolerance == DEFAULT_TOLERANCE:
-        # What nobody asked for must not refuse a sensor.
+        # The default must not refuse a sensor for which no model states so small an error.
         tolerance = max(tolerance, least)
     if not tolerance >= least:
         problem = f"no model can state so small an error; the best is the {best}'s {100 * least:g}% in sensitivity"
@@ -84,7 +86,7 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     if not models:
         problem = f"no model covers the sensor: {'; '.join(passed)}"
         raise InputError(problem, key="model", value="auto", remedy=remedy(sensor))
-    return ModelSequence(tuple(models), tuple(passed))
+    return ModelSequence(tuple(models), tuple(passed), tolerance)
 
 
 def remedy(sensor: Sensor) -> str:

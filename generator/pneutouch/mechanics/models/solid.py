@@ -83,7 +83,7 @@ class SolidElements(SensorModel):
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Relative errors of the mesh in sensitivity and limit pressure."""
-        error, plate = limit_discretisation(sensor), sensor.protocol.body is None
+        error, plate = limit_discretisation(sensor), not (sensor.protocol.body or sensor.protocol.soft)
         relative = self.stated_error(sensor)
         summary = (_SUMMARY if plate else _OBJECT_SUMMARY).format(relative=relative, limit=error)
         return discretised(summary, relative, limit_relative=error)

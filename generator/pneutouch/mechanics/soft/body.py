@@ -24,21 +24,14 @@ class Nodule:
 @dataclass(frozen=True, slots=True)
 class SoftBody:
     """A soft object: Young's ``modulus`` (MPa), Poisson ratio, and the ``thickness`` (mm) of a layer that is bonded to
-    a rigid ground; None: a half-space. ``radius`` of its surface, mm, as of a ball; None: it is flat. ``nodule``: a
-    stiffer ball inside, of the same Poisson ratio; None: it is even."""
+    a rigid ground; None: a half-space. ``nodule``: a stiffer ball inside, of the same Poisson ratio; None: it is even.
+    ``label``: the object in words."""
 
     modulus: float
     poisson: float = 0.49
     thickness: float | None = None
-    radius: float | None = None
     nodule: Nodule | None = None
-
-    @property
-    def label(self) -> str:
-        """The material in words."""
-        layer = "" if self.thickness is None else f", a layer of {self.thickness:g} mm"
-        inside = "" if self.nodule is None else f", a nodule of {self.nodule.radius:g} mm in it"
-        return f"soft ({self.modulus:g} MPa{layer}{inside})"
+    label: str = "soft object"
 
     def deflection(self, k: Array) -> Array:
         """Deflection over pressure at wavenumbers k (1/mm), mm/MPa."""
@@ -48,8 +41,8 @@ class SoftBody:
         return bonded_layer(k, self.thickness, shear, self.poisson)
 
     def taken(self, k: Array) -> Array:
-        """Part of the deflection that the nodule takes (2, m): the square of the sum of each row, by pressures of the
-        wavenumbers k (1/mm), is the loss of work, twice, in N mm/MPa2.
+        """Strain at the nodule by a pressure of each wavenumber k (1/mm), over the pressure, times the root of what it
+        costs (2, m): the squares of its sums over a load are twice the work that the nodule takes from it.
 
         Eshelby's equivalent inclusion in the even field that the half-space has at the nodule's middle (Mura,
         Micromechanics of Defects in Solids, 1987, sec. 22, doi:10.1007/978-94-009-3489-4): of the strain without its

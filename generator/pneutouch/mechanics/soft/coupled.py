@@ -15,10 +15,9 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.soft.body import RingCompliance, SoftBody
 from pneutouch.mechanics.solid.banded import solve
 from pneutouch.mechanics.solid.elements import Supply
-from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, tangent
-from pneutouch.mechanics.solid.object_contact import FacePoints, Indenter, Plate
+from pneutouch.mechanics.solid.object_contact import FacePoints, Indenter
 
 _ITERATIONS, _SMALL = 30, 1e-8
 """Most Newton steps, and the last one's displacement over R0."""
@@ -52,22 +51,17 @@ class SoftState:
 
 @dataclass(frozen=True)
 class SoftScene:
-    """A wall with its filling under a soft ``body``, whose lowest point is at the height ``top`` at first contact."""
+    """A wall with its filling under a soft ``body``, at rest as the object ``touching`` is at first contact."""
 
     solid: SolidModel
     supply: Supply
     body: SoftBody
-    top: float
+    touching: Indenter
 
     @cached_property
     def points(self) -> FacePoints:
         """Points of contact: two an edge, as many as an edge has free nodes, so that each force is determined."""
         return FacePoints(self.solid.mesh.outer, self.solid.rest, 1.0, points=2)
-
-    @cached_property
-    def _at_rest(self) -> Indenter:
-        radius = self.body.radius
-        return Plate(0.0, np.inf, 1.0) if radius is None else ball(radius / self.solid.length)
 
     @cached_property
     def widths(self) -> Array:
@@ -83,7 +77,7 @@ class SoftScene:
 
     def under(self, travel: float, r: Array) -> tuple[Array, Array, Array]:
         """Height of the surface at rest at radii r, at a travel, and its two derivatives; nondimensional."""
-        return self._at_rest.at(self.top - travel).underside(r)
+        return self.touching.at(self.touching.height - travel).underside(r)
 
 
 def balance(scene: SoftScene, travel: float, start: Array, forces: Array) -> SoftState | None:
@@ -142,6 +136,7 @@ class _LinearSystem:
             touching = gap <= gap.min()
         self._near: Index = np.flatnonzero((r <= reach) | touching)
         self._touching = touching.ravel()[self._near]
+        self._passes = bool((np.delete(gap.ravel(), self._near) < 0.0).any())
         self._gap, self._force = gap.ravel()[self._near], forces.ravel()[self._near]
         self._rings = scene.rings(r, self._near, reach)
         self._compliance = self._rings.matrix * solid.mu * solid.length
@@ -216,8 +211,8 @@ class _LinearSystem:
         return self._scene.solid.expand(moved), self._all(np.maximum(forces, 0.0)), self._all(now) > 0.0
 
     def widens(self, touching: Flags) -> bool:
-        """True if the contact comes close to the reach, beyond which no point may touch."""
-        return bool(self._radii[touching].max(initial=0.0) > _CLOSE * self._reach)
+        """True if the contact comes close to the reach, beyond which no point may touch, or a point passes there."""
+        return self._passes or bool(self._radii[touching].max(initial=0.0) > _CLOSE * self._reach)
 
     def _all(self, values: Array) -> Array:
         out = np.zeros(self._radii.size)

@@ -15,30 +15,27 @@ from pneutouch.mechanics.solid.indent import IndentationPath, PressRecorder, Pre
 from pneutouch.mechanics.solid.indenter import RigidObject, UndersidePiece
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NoConvergenceError
 from pneutouch.mechanics.solid.object_contact import Footprint
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 STRAINED = 0.5
 """Greatest deflection of the object's surface over the radius of the contact (of a layer also over its thickness) for
-which linear elasticity is taken: up to it force and rise are within 2 % of CalculiX with a neo-Hookean object
-(docs/background/contact.md)."""
-
-_LEAST_STEPS = 3
-"""Least number of steps of a press that says anything of the object."""
+which linear elasticity is taken: up to it force and rise are as docs/background/contact.md states against CalculiX
+with a neo-Hookean object."""
 
 _SHORTEST = 1e-3
 """Shortest step, R0, before the path counts as lost."""
 
 _DRAWN, _CORNERS = 4.0, 80
-"""Radius, over the dome's, to which a deformed surface is drawn, and its corners."""
+"""Greatest radius, over the dome's, to which a deformed surface is drawn, and its corners."""
 
 
 @dataclass(frozen=True)
 class SoftPoint:
-    """A balance in mm, N and MPa: travel, force, rise; mean deflection of the object's surface under the force
-    (``lift``, mm), and that over the greatest that linear elasticity is taken for (``strain``)."""
+    """A balance in mm, N and MPa: force, rise; mean deflection of the object's surface under the force (``lift``, mm),
+    and that over the greatest that linear elasticity is taken for (``strain``)."""
 
-    travel: float
     force: float
     rise: float
     lift: float
@@ -50,8 +47,8 @@ class SoftPress:
 
     def __init__(self, solid: SolidModel, free: FreeState, press: PressSettings, body: SoftBody) -> None:
         self.solid, self.free, self.body = solid, free, body
-        self.top = free.outer_apex / solid.length
-        self.scene = SoftScene(solid, shut_in(solid, free, press), body, self.top)
+        self.touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
+        self.scene = SoftScene(solid, shut_in(solid, free, press), body, self.touch.body)
         self._last: SoftState | None = None
 
     def to(self, travel: float) -> SoftState | None:
@@ -83,7 +80,7 @@ class SoftPress:
         radius = float(found.radii[found.forces > 0.0].max()) * solid.length
         across = radius if body.thickness is None else min(radius, body.thickness)
         rise = found.state.filling.pressure * solid.mu - self.free.pressure
-        return SoftPoint(float(found.travel) * solid.length, float(forces.sum()), rise, lift, lift / across / STRAINED)
+        return SoftPoint(float(forces.sum()), rise, lift, lift / across / STRAINED)
 
     def _forces(self, found: SoftState) -> Array:
         return np.asarray(found.forces[found.forces > 0.0] * self.solid.mu * self.solid.length**2)
@@ -110,7 +107,8 @@ class SoftPress:
 
     def surface(self, found: SoftState | None) -> RigidObject:
         """Surface of the object, mm, deformed by a balance, None: at rest, as the body of lines that it is drawn as."""
-        r = np.linspace(0.0, _DRAWN * self.solid.length, _CORNERS)
+        wide = min(_DRAWN, self.touch.body.span[1])
+        r = np.linspace(0.0, wide * self.solid.length, _CORNERS)
         travel = 0.0 if found is None else found.travel
         z = self.scene.under(travel, r / self.solid.length)[0] * self.solid.length
         if found is not None:
@@ -125,18 +123,27 @@ def soft_press(
 ) -> IndentationPath:
     """Press a free dome by a soft object to the depth, or to where the object is strained beyond linear elasticity.
 
-    Raises InputError for an object that is strained so far within the first steps.
+    Raises InputError for an object that is strained so far in the first step, NoConvergenceError if none balances it.
     """
     path = SoftPress(solid, free, press, body)
-    recorder = PressRecorder(solid, free, first_touch(solid, free, None, press.plate_diameter, press.plate_rim), probe)
+    recorder = PressRecorder(solid, free, path.touch, probe)
     states = [recorder.balanced(free.unit, Footprint(0.0, 0.0, 0.0), 0.0, 0.0, np.nan)]
     undersides, events, before = [path.surface(None)], recorder.events(states[0], states[0], press), 0.0
     for depth in press.depth / press.steps * np.arange(1, press.steps + 1):
         found = path.to(float(depth))
+        if found is None and len(states) == 1:
+            raise NoConvergenceError(f"{depth:g} mm of a {body.label}", "no balance of wall and object", "more steps")
         if found is None:
             events.append(SolidEvent("lost", states[-1].indentation, DETAIL["lost"]))
             break
         strain = path.point(found).strain
+        if strain > 1.0 and len(states) == 1:
+            raise InputError(
+                f"the {body.label} is strained beyond linear elasticity in the first step, {depth:g} mm",
+                key="contact.object_modulus_MPa",
+                value=body.modulus,
+                remedy="take a stiffer or a thicker object, or more steps (indentation.steps)",
+            )
         force, slope = float(found.forces.sum()), found.pressure_rate / found.stiffness
         state = recorder.balanced(found.state, path.footprint(found), force, found.stiffness, slope)
         states.append(replace(state, indentation=float(depth)))
@@ -148,11 +155,4 @@ def soft_press(
             events.append(SolidEvent("strained", at, DETAIL["strained"]))
             break
         before = strain
-    if len(states) <= _LEAST_STEPS:
-        raise InputError(
-            "the object is so soft that it is strained beyond linear elasticity before the dome presses back",
-            key="contact.object_modulus_MPa",
-            value=body.modulus,
-            remedy="take a stiffer or a thicker object, or a softer sensor",
-        )
     return IndentationPath(states, states, events, len(states) == press.steps + 1, undersides=undersides)
